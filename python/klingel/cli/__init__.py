@@ -1,0 +1,5 @@
+"""Command line of Klingel."""
+
+
+def main() -> None:
+    """Run the command line."""
