@@ -1,0 +1,184 @@
+//! From the written diagram to slots and blocks: every name found, every number checked, once before a run.
+//! A spec that compiles can only fail later by a signal that is not finite or leaves a table.
+
+use super::block::{Block, Operand, Pi};
+use super::controller::Controller;
+use super::error::ControlError;
+use super::filter::{Sections, StateSpace};
+use super::lookup::Lookup;
+use super::spec::{BlockSpec, ControlSpec, Parameter, Section};
+use std::collections::HashMap;
+
+/// The names known so far and their slots.
+struct Names(HashMap<String, usize>);
+
+impl Names {
+    fn add(&mut self, name: &str) -> Result<(), ControlError> {
+        let slot = self.0.len();
+        match self.0.insert(name.into(), slot) {
+            None => Ok(()),
+            Some(_) => Err(ControlError::Duplicate { name: name.into() }),
+        }
+    }
+
+    fn slot(&self, place: &str, signal: &str) -> Result<usize, ControlError> {
+        let unknown = || ControlError::UnknownSignal { place: place.into(), signal: signal.into() };
+        self.0.get(signal).copied().ok_or_else(unknown)
+    }
+
+    fn slots(&self, place: &str, signals: &[String]) -> Result<Vec<usize>, ControlError> {
+        signals.iter().map(|s| self.slot(place, s)).collect()
+    }
+
+    fn operand(&self, place: &str, parameter: &Parameter) -> Result<Operand, ControlError> {
+        match parameter {
+            Parameter::Number(x) => finite(place, "a parameter", *x).map(Operand::Number),
+            Parameter::Signal(s) => self.slot(place, s).map(Operand::Slot),
+        }
+    }
+}
+
+pub(super) fn compile(spec: &ControlSpec) -> Result<Controller, ControlError> {
+    if !(spec.sample_time.is_finite() && spec.sample_time > 0.0) {
+        return Err(ControlError::SampleTime { value: spec.sample_time });
+    }
+    let mut names = Names(HashMap::new());
+    for name in &spec.measurements {
+        names.add(name)?;
+    }
+    let mut blocks = Vec::with_capacity(spec.blocks.len());
+    for block in &spec.blocks {
+        blocks.push((block.name().to_owned(), compile_block(block, &names)?));
+        names.add(block.name())?;
+    }
+    let mut targets = HashMap::new();
+    for c in &spec.commands {
+        if targets.insert(&c.target, ()).is_some() {
+            return Err(ControlError::Duplicate { name: c.target.clone() });
+        }
+    }
+    let slot_of = |place: &str, signal: &str| names.slot(place, signal);
+    let commands = spec.commands.iter().map(|c| slot_of(&format!("command `{}`", c.target), &c.signal));
+    let probes = spec.probes.iter().map(|p| slot_of(&format!("probe `{}`", p.channel), &p.signal));
+    let (commands, probes) = (commands.collect::<Result<_, _>>()?, probes.collect::<Result<_, _>>()?);
+    Ok(Controller::new(spec, blocks, commands, probes))
+}
+
+fn compile_block(spec: &BlockSpec, names: &Names) -> Result<Block, ControlError> {
+    let block = spec.name();
+    let place = format!("block `{block}`");
+    let slot = |signal: &str| names.slot(&place, signal);
+    let operand = |p: &Parameter| names.operand(block, p);
+    Ok(match spec {
+        BlockSpec::Sum { terms, bias, .. } => {
+            let terms = terms.iter().map(|t| Ok((slot(&t.signal)?, operand(&t.gain)?)));
+            Block::Sum { terms: terms.collect::<Result<_, _>>()?, bias: finite(block, "bias", *bias)? }
+        }
+        BlockSpec::Product { factors, .. } => Block::Product { factors: names.slots(&place, factors)? },
+        BlockSpec::Quotient { numerator, denominator, floor, .. } => Block::Quotient {
+            numerator: slot(numerator)?,
+            denominator: slot(denominator)?,
+            floor: positive(block, "floor", *floor)?,
+        },
+        BlockSpec::Filter { input, sections, .. } => {
+            for section in sections {
+                check_section(block, section)?;
+            }
+            Block::Filter { input: slot(input)?, filter: Sections::new(sections.clone()) }
+        }
+        BlockSpec::StateSpace { inputs, a, b, c, d, .. } => {
+            let inputs = names.slots(&place, inputs)?;
+            let filter = compile_state_space(block, inputs.len(), a, b, c, d)?;
+            Block::StateSpace { gathered: vec![0.0; inputs.len()], inputs, filter }
+        }
+        BlockSpec::Pi { input, proportional, integral, lower, upper, .. } => Block::Pi(Pi {
+            input: slot(input)?,
+            proportional: operand(proportional)?,
+            rate: operand(integral)?,
+            lower: lower.as_ref().map(operand).transpose()?,
+            upper: upper.as_ref().map(operand).transpose()?,
+            integral: 0.0,
+            last_error: 0.0,
+        }),
+        BlockSpec::Saturation { input, lower, upper, .. } => {
+            Block::Saturation { input: slot(input)?, lower: operand(lower)?, upper: operand(upper)? }
+        }
+        BlockSpec::RateLimit { input, rising, falling, .. } => Block::RateLimit {
+            input: slot(input)?,
+            rising: positive(block, "rising", *rising)?,
+            falling: positive(block, "falling", *falling)?,
+            last: 0.0,
+        },
+        BlockSpec::Delay { input, samples, .. } => {
+            if *samples == 0 {
+                return Err(bad(block, "samples", 0, "give at least 1, or leave the block out"));
+            }
+            Block::Delay { input: slot(input)?, ring: vec![0.0; *samples], oldest: 0 }
+        }
+        BlockSpec::Lookup { input, x, y, interpolation, edge, .. } => {
+            check_points(block, x, y)?;
+            Block::Lookup { input: slot(input)?, table: Lookup::new(x.clone(), y.clone(), *interpolation, *edge) }
+        }
+    })
+}
+
+fn bad(block: &str, what: &'static str, value: impl ToString, remedy: &'static str) -> ControlError {
+    ControlError::Value { block: block.into(), what, value: value.to_string(), remedy }
+}
+
+fn finite(block: &str, what: &'static str, x: f64) -> Result<f64, ControlError> {
+    if x.is_finite() { Ok(x) } else { Err(bad(block, what, x, "give a finite number")) }
+}
+
+fn positive(block: &str, what: &'static str, x: f64) -> Result<f64, ControlError> {
+    if x.is_finite() && x > 0.0 { Ok(x) } else { Err(bad(block, what, x, "give a finite number above zero")) }
+}
+
+const NO_POLE_AT_ONE: &str = "it has no steady state to start from; use a `pi` block for an integral";
+
+fn check_section(block: &str, s: &Section) -> Result<(), ControlError> {
+    for x in s.b.iter().chain(&s.a) {
+        finite(block, "a coefficient", *x)?;
+    }
+    let at_one = 1.0 + s.a[0] + s.a[1];
+    if at_one.abs() < 1e-12 { Err(bad(block, "1 + a1 + a2", at_one, NO_POLE_AT_ONE)) } else { Ok(()) }
+}
+
+fn compile_state_space(
+    block: &str,
+    inputs: usize,
+    a: &[Vec<f64>],
+    b: &[Vec<f64>],
+    c: &[f64],
+    d: &[f64],
+) -> Result<StateSpace, ControlError> {
+    let n = c.len();
+    let shape = |m: &[Vec<f64>], columns| m.len() == n && m.iter().all(|r| r.len() == columns);
+    if !(shape(a, n) && shape(b, inputs) && d.len() == inputs) {
+        let sizes = format!("a {} rows, b {} rows, c {n}, d {}, inputs {inputs}", a.len(), b.len(), d.len());
+        return Err(bad(block, "the shape of a, b, c, d", sizes, "give a n x n, b n x m, c n, d m"));
+    }
+    let (a, b) = (a.concat(), b.concat());
+    for x in a.iter().chain(&b).chain(c).chain(d) {
+        finite(block, "a coefficient", *x)?;
+    }
+    let filter = StateSpace::new(a, b, c.to_vec(), d.to_vec());
+    match filter.steady_state(&vec![1.0; inputs]) {
+        Some(_) => Ok(filter),
+        None => Err(bad(block, "a pole", "1", NO_POLE_AT_ONE)),
+    }
+}
+
+fn check_points(block: &str, x: &[f64], y: &[f64]) -> Result<(), ControlError> {
+    if x.len() != y.len() || x.len() < 2 {
+        let sizes = format!("{} and {}", x.len(), y.len());
+        return Err(bad(block, "the number of x and y", sizes, "give as many x as y, two or more"));
+    }
+    for v in x.iter().chain(y) {
+        finite(block, "a point", *v)?;
+    }
+    match x.windows(2).find(|w| w[1] <= w[0]) {
+        Some(w) => Err(bad(block, "the x after a smaller or equal one", w[1], "give x in increasing order")),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,197 @@
+//! A compiled controller: one array of signals, filled from the front in the order of the blocks.
+//! The engine calls `reset` once and `step` at every sample, and holds the commands in between.
+
+use super::block::Block;
+use super::compile;
+use super::error::ControlError;
+use super::lookup::Outside;
+use super::spec::ControlSpec;
+
+/// A block diagram ready to run. Clone it to run the same controller for another vehicle.
+#[derive(Clone, Debug)]
+pub struct Controller {
+    sample_time: f64,
+    measurement_names: Vec<String>,
+    command_targets: Vec<String>,
+    probe_channels: Vec<(String, String)>,
+    blocks: Vec<(String, Block)>,
+    /// Measurements first, then one signal a block.
+    signals: Vec<f64>,
+    command_slots: Vec<usize>,
+    probe_slots: Vec<usize>,
+    commands: Vec<f64>,
+    probes: Vec<f64>,
+}
+
+impl Controller {
+    /// Checks and compiles a diagram.
+    ///
+    /// # Errors
+    /// Names that are unknown or taken twice, numbers out of their range, filters with a pole at z = 1.
+    pub fn compile(spec: &ControlSpec) -> Result<Self, ControlError> {
+        compile::compile(spec)
+    }
+
+    pub(super) fn new(
+        spec: &ControlSpec,
+        blocks: Vec<(String, Block)>,
+        command_slots: Vec<usize>,
+        probe_slots: Vec<usize>,
+    ) -> Self {
+        Self {
+            sample_time: spec.sample_time,
+            measurement_names: spec.measurements.clone(),
+            command_targets: spec.commands.iter().map(|c| c.target.clone()).collect(),
+            probe_channels: spec.probes.iter().map(|p| (p.channel.clone(), p.unit.clone())).collect(),
+            signals: vec![0.0; spec.measurements.len() + blocks.len()],
+            commands: vec![0.0; command_slots.len()],
+            probes: vec![0.0; probe_slots.len()],
+            blocks,
+            command_slots,
+            probe_slots,
+        }
+    }
+
+    /// Time between two calls of `step`, s.
+    pub fn sample_time(&self) -> f64 {
+        self.sample_time
+    }
+
+    /// The channels `reset` and `step` want, in order.
+    pub fn measurement_names(&self) -> &[String] {
+        &self.measurement_names
+    }
+
+    /// The inputs of the plant that `commands` drives, in order.
+    pub fn command_targets(&self) -> &[String] {
+        &self.command_targets
+    }
+
+    /// Channel and unit of every probe, in order.
+    pub fn probe_channels(&self) -> &[(String, String)] {
+        &self.probe_channels
+    }
+
+    /// Goes to the state that constant measurements would lead to, integrals at zero: a run starts without a jolt.
+    ///
+    /// # Errors
+    /// As `step`.
+    pub fn reset(&mut self, measurements: &[f64]) -> Result<(), ControlError> {
+        self.sweep(measurements, Block::reset)
+    }
+
+    /// One sample: measurements in (SI, in the order of `measurement_names`), commands and probes out.
+    ///
+    /// # Errors
+    /// A wrong number of measurements, a value that is not finite, an input outside its table.
+    pub fn step(&mut self, measurements: &[f64]) -> Result<(), ControlError> {
+        self.sweep(measurements, Block::step)
+    }
+
+    /// What the last `reset` or `step` commands, in the order of `command_targets`.
+    pub fn commands(&self) -> &[f64] {
+        &self.commands
+    }
+
+    /// The probed signals of the last `reset` or `step`, in the order of `probe_channels`.
+    pub fn probes(&self) -> &[f64] {
+        &self.probes
+    }
+
+    fn sweep(
+        &mut self,
+        measurements: &[f64],
+        law: fn(&mut Block, &[f64], f64) -> Result<f64, Outside>,
+    ) -> Result<(), ControlError> {
+        let offset = self.measurement_names.len();
+        if measurements.len() != offset {
+            return Err(ControlError::Measurements { expected: offset, given: measurements.len() });
+        }
+        if let Some(i) = measurements.iter().position(|m| !m.is_finite()) {
+            return Err(ControlError::Measurement { name: self.measurement_names[i].clone(), value: measurements[i] });
+        }
+        self.signals[..offset].copy_from_slice(measurements);
+        for (i, (name, block)) in self.blocks.iter_mut().enumerate() {
+            let value = law(block, &self.signals, self.sample_time).map_err(|Outside { value, low, high }| {
+                ControlError::OutsideTable { block: name.clone(), value, low, high }
+            })?;
+            if !value.is_finite() {
+                return Err(ControlError::NotFinite { block: name.clone(), value });
+            }
+            self.signals[offset + i] = value;
+        }
+        for (command, &slot) in self.commands.iter_mut().zip(&self.command_slots) {
+            *command = self.signals[slot];
+        }
+        for (probe, &slot) in self.probes.iter_mut().zip(&self.probe_slots) {
+            *probe = self.signals[slot];
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn controller(blocks: &str) -> Result<Controller, ControlError> {
+        let json = format!(
+            r#"{{"sample_time": 0.001, "measurements": ["v", "w"], "blocks": [{blocks}],
+                "commands": [{{"target": "motor", "signal": "out"}}],
+                "probes": [{{"channel": "u", "unit": "V", "signal": "out"}}]}}"#
+        );
+        Controller::compile(&serde_json::from_str(&json).unwrap())
+    }
+
+    const LOOKUP: &str = r#"{"kind": "lookup", "name": "out", "input": "v", "x": [0, 10], "y": [1, 3]}"#;
+
+    #[test]
+    fn signals_flow_from_measurements_through_blocks_to_commands_and_probes() {
+        let mut c = controller(
+            r#"{"kind": "lookup", "name": "k", "input": "v", "x": [0, 10], "y": [1, 3]},
+               {"kind": "sum", "name": "out", "terms": [{"signal": "w", "gain": "k"}, {"signal": "v"}]}"#,
+        )
+        .unwrap();
+        c.reset(&[5.0, 10.0]).unwrap();
+        assert_eq!((c.commands(), c.probes()), (&[25.0][..], &[25.0][..]));
+        c.step(&[0.0, 10.0]).unwrap();
+        assert_eq!(c.commands(), [10.0]);
+        assert_eq!(c.measurement_names(), ["v", "w"]);
+        assert_eq!(c.command_targets(), ["motor"]);
+        assert_eq!(c.probe_channels(), [("u".to_owned(), "V".to_owned())]);
+    }
+
+    #[test]
+    fn what_cannot_be_known_or_run_is_refused_by_name() {
+        for (blocks, word) in [
+            (r#"{"kind": "sum", "name": "out", "terms": [{"signal": "x"}]}"#, "`x`"),
+            (r#"{"kind": "sum", "name": "out", "terms": []}, {"kind": "sum", "name": "out", "terms": []}"#, "twice"),
+            (r#"{"kind": "delay", "name": "out", "input": "v", "samples": 0}"#, "samples"),
+            (r#"{"kind": "lookup", "name": "out", "input": "v", "x": [1, 1], "y": [0, 0]}"#, "increasing"),
+            (r#"{"kind": "rate_limit", "name": "out", "input": "v", "rising": 0, "falling": 1}"#, "rising"),
+            (r#"{"kind": "filter", "name": "out", "input": "v", "sections": [{"b": [1, 0, 0], "a": [-1, 0]}]}"#, "pi"),
+            (
+                r#"{"kind": "state_space", "name": "out", "inputs": ["v"], "a": [[1]], "b": [[1]], "c": [1], "d": [0]}"#,
+                "pole",
+            ),
+            (
+                r#"{"kind": "state_space", "name": "out", "inputs": ["v"], "a": [[1, 2]], "b": [[1]], "c": [1], "d": [0]}"#,
+                "shape",
+            ),
+        ] {
+            let error = controller(blocks).unwrap_err().to_string();
+            assert!(error.contains(word), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_run_reports_the_block_and_the_value_that_failed() {
+        let mut c = controller(LOOKUP).unwrap();
+        let outside = ControlError::OutsideTable { block: "out".into(), value: 11.0, low: 0.0, high: 10.0 };
+        assert_eq!(c.step(&[11.0, 0.0]).unwrap_err(), outside);
+        assert!(c.step(&[f64::NAN, 0.0]).unwrap_err().to_string().contains("`v`"));
+        assert!(c.step(&[1.0]).unwrap_err().to_string().contains("expects 2"));
+        let mut c = controller(r#"{"kind": "product", "name": "out", "factors": ["v", "w"]}"#).unwrap();
+        assert!(c.step(&[1e200, 1e200]).unwrap_err().to_string().contains("`out` gives inf"));
+    }
+}

@@ -1,0 +1,31 @@
+//! What can go wrong in a block diagram: while it is compiled, and while it runs.
+//! Every message names the block, the value and the remedy.
+
+use thiserror::Error;
+
+/// An error of a controller.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ControlError {
+    #[error("control.sample_time is {value} s; give a finite time above zero, e.g. 0.001")]
+    SampleTime { value: f64 },
+    #[error("control signal `{name}` is defined twice; give every measurement and block its own name")]
+    Duplicate { name: String },
+    #[error(
+        "control {place} reads `{signal}`, which is neither a measurement nor a block before it; \
+         add it to `measurements` or move its block forward"
+    )]
+    UnknownSignal { place: String, signal: String },
+    #[error("control block `{block}`: {what} is {value}; {remedy}")]
+    Value { block: String, what: &'static str, value: String, remedy: &'static str },
+    #[error("control expects {expected} measurements and was given {given}; pass one value a name, in order")]
+    Measurements { expected: usize, given: usize },
+    #[error("control measurement `{name}` is {value}; the plant state is no longer finite")]
+    Measurement { name: String, value: f64 },
+    #[error("control block `{block}` gives {value}; check its gains and inputs")]
+    NotFinite { block: String, value: f64 },
+    #[error(
+        "control block `{block}`: input {value} lies outside its table {low} .. {high}; \
+         extend the table or set edge = \"hold\""
+    )]
+    OutsideTable { block: String, value: f64, low: f64, high: f64 },
+}
