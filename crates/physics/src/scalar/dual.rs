@@ -135,6 +135,14 @@ impl<const N: usize> Scalar for Dual<N> {
             slope: core::array::from_fn(|i| (0..M).map(|m| jacobian[k][m] * args[m].slope[i]).sum()),
         })
     }
+    #[inline(always)]
+    fn lift_n_lazy<const M: usize, const K: usize>(
+        args: [Self; M],
+        _: impl Fn([f64; M]) -> [f64; K],
+        with_jacobian: impl Fn([f64; M]) -> ([f64; K], [[f64; M]; K]),
+    ) -> [Self; K] {
+        Self::lift_n(args, with_jacobian)
+    }
     /// The slope at zero is set to zero: laws that take a root of a sum of squares are even there.
     #[inline(always)]
     fn sqrt(self) -> Self {

@@ -104,8 +104,15 @@ impl Scalar for Lanes {
         args: [Self; M],
         f: impl Fn([f64; M]) -> ([f64; K], [[f64; M]; K]),
     ) -> [Self; K] {
+        Self::lift_n_lazy(args, |x| f(x).0, &f)
+    }
+    fn lift_n_lazy<const M: usize, const K: usize>(
+        args: [Self; M],
+        values: impl Fn([f64; M]) -> [f64; K],
+        _: impl Fn([f64; M]) -> ([f64; K], [[f64; M]; K]),
+    ) -> [Self; K] {
         let a = args.map(Self::to_array);
-        let lanes: [[f64; K]; 4] = core::array::from_fn(|l| f(core::array::from_fn(|m| a[m][l])).0);
+        let lanes: [[f64; K]; 4] = core::array::from_fn(|l| values(core::array::from_fn(|m| a[m][l])));
         core::array::from_fn(|k| Self::from(core::array::from_fn(|l| lanes[l][k])))
     }
     #[inline(always)]

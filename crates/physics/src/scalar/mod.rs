@@ -66,6 +66,13 @@ pub trait Scalar:
         f: impl Fn([f64; M]) -> ([f64; K], [[f64; M]; K]),
     ) -> [Self; K];
 
+    /// As `lift_n`, with the values alone beside: what needs no slopes does not compute them. Both must agree bitwise.
+    fn lift_n_lazy<const M: usize, const K: usize>(
+        args: [Self; M],
+        values: impl Fn([f64; M]) -> [f64; K],
+        with_jacobian: impl Fn([f64; M]) -> ([f64; K], [[f64; M]; K]),
+    ) -> [Self; K];
+
     fn sqrt(self) -> Self;
     fn sin_cos(self) -> (Self, Self);
     fn exp(self) -> Self;

@@ -43,6 +43,14 @@ impl Scalar for f64 {
         f(args).0
     }
     #[inline(always)]
+    fn lift_n_lazy<const M: usize, const K: usize>(
+        args: [Self; M],
+        values: impl Fn([f64; M]) -> [f64; K],
+        _: impl Fn([f64; M]) -> ([f64; K], [[f64; M]; K]),
+    ) -> [Self; K] {
+        values(args)
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }

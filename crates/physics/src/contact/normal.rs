@@ -1,0 +1,124 @@
+//! The elastic normal contact of one zone of the wheel as a sum over strips (semi-Hertzian, after Kik-Piotrowski and Ayasse-Chollet).
+//! Exact for constant curvature; a patch that is cut by a zone border is never counted twice, so loads move over smoothly.
+
+use super::geometry::Strips;
+use super::hertz::{Ellipse, ellipse};
+
+/// The part of the wheel that touches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Zone {
+    Tread,
+    Root,
+    Flange,
+}
+
+/// What the penetration of a zone gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Load {
+    /// Size of the resultant, N.
+    pub force: f64,
+    /// Its angle in the wheel's frame, rad, positive on the flange.
+    pub angle: f64,
+    /// Load-weighted place on the wheel and radius increment, m.
+    pub y: f64,
+    pub z: f64,
+    /// Semi-axes of the equivalent ellipse along and across the rolling direction, m.
+    pub a: f64,
+    pub b: f64,
+}
+
+/// Load-weighted sums of one pass over the strips.
+#[derive(Default)]
+struct Sums {
+    load: f64,
+    place: f64,
+    place2: f64,
+    curvature: f64,
+}
+
+/// The load of `strips` whose `penetration` (normal, m; negative where apart) is given.
+///
+/// Strip j carries K x_l^2 with x_l^2 = h_j a^2 / (eps d), h_j = penetration - (1 - eps) d; a, eps and K are those of the
+/// Hertz contact with curvature A = mean of cos(angle) / (2 r) along and B = eps d / b^2 across the rolling direction,
+/// b^2 = 5 times the variance of the load: eps is found by iteration from `epsilon`, and returned in its place.
+pub(super) fn zone_load(
+    strips: &Strips,
+    penetration: &[f64],
+    radius: f64,
+    pair_modulus: f64,
+    epsilon: &mut f64,
+) -> Option<Load> {
+    let depth = penetration.iter().fold(f64::MIN, |m, &p| m.max(p));
+    if !(depth > 0.0) {
+        return None;
+    }
+    let first = penetration.iter().position(|&p| p > 0.0)?;
+    let end = penetration.iter().rposition(|&p| p > 0.0)? + 1;
+    let mut state = None;
+    for _ in 0..60 {
+        let base = (1.0 - *epsilon) * depth;
+        let mut s = Sums::default();
+        for j in first..end {
+            let h = (penetration[j] - base).max(0.0);
+            let place = (j - first) as f64 * strips.width;
+            s.load += h;
+            s.place += h * place;
+            s.place2 += h * place * place;
+            s.curvature += h * strips.cos[j] / (radius + strips.z[j]);
+        }
+        // One strip has the variance of its own width.
+        let variance = s.place2 / s.load - (s.place / s.load).powi(2) + strips.width * strips.width / 12.0;
+        let b = (5.0 * variance).sqrt();
+        let along = 0.5 * s.curvature / s.load;
+        let across = *epsilon * depth / (b * b);
+        let e = ellipse(along, across);
+        state = Some((e, across));
+        let change = e.epsilon - *epsilon;
+        *epsilon = e.epsilon;
+        if change.abs() < 1e-9 {
+            break;
+        }
+    }
+    let (e, across) = state?;
+    Some(resultant(strips, &penetration[first..end], first, depth, (e, across), pair_modulus))
+}
+
+/// Sums the strip forces of a solved zone.
+fn resultant(
+    strips: &Strips,
+    penetration: &[f64],
+    first: usize,
+    depth: f64,
+    (e, across): (Ellipse, f64),
+    pair_modulus: f64,
+) -> Load {
+    let b_hertz = (e.epsilon * depth / across).sqrt();
+    let a_hertz = e.ratio * b_hertz;
+    let stiffness = 0.75 * e.load * pair_modulus * depth / (a_hertz * a_hertz);
+    let base = (1.0 - e.epsilon) * depth;
+    let (mut load, mut x4, mut side, mut down, mut y, mut z, mut place, mut place2) =
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    for (i, p) in penetration.iter().enumerate() {
+        let (j, h) = (first + i, (p - base).max(0.0));
+        let x2 = h * a_hertz * a_hertz / (e.epsilon * depth);
+        let force = stiffness * x2 * strips.width;
+        let s = i as f64 * strips.width;
+        load += force;
+        x4 += force * x2;
+        side += force * strips.angle[j].sin();
+        down += force * strips.cos[j];
+        y += force * strips.y[j];
+        z += force * strips.z[j];
+        place += force * s;
+        place2 += force * s * s;
+    }
+    let variance = place2 / load - (place / load).powi(2) + strips.width * strips.width / 12.0;
+    Load {
+        force: side.hypot(down),
+        angle: side.atan2(down),
+        y: y / load,
+        z: z / load,
+        a: (1.25 * x4 / load).sqrt(),
+        b: (5.0 * variance).sqrt(),
+    }
+}

@@ -1,0 +1,233 @@
+//! Smooth tables of the elastic contact of a pair over shift, roll and penetration, one for each zone of the wheel.
+//! Built once in f64; read through any `Scalar`, so that dual numbers get the exact slopes of what is simulated.
+
+use super::geometry::{RigidContact, Strips, first_touch};
+use super::normal::{Zone, zone_load};
+use super::spline::{Axis, plane, space, space_slopes};
+use super::{ContactError, Material, PairGeometry, Profile};
+use crate::{Mask, Scalar};
+use rayon::prelude::*;
+
+/// The tables' reach: shift of the right wheel to the field side (m), roll (rad).
+const SHIFT: [f64; 2] = [-0.012, 0.014];
+const ROLL: [f64; 2] = [-0.012, 0.012];
+const SHIFT_INTERVALS: usize = 260;
+const ROLL_INTERVALS: usize = 24;
+const DEPTH_INTERVALS: usize = 14;
+/// Largest penetration of each zone along z, m; steep zones go deeper along z for the same load.
+const DEPTH: [f64; 3] = [4e-4, 8e-4, 1.4e-3];
+/// Width of the strips of each zone, m.
+const STRIP: [f64; 3] = [1e-4, 5e-5, 5e-5];
+/// A zone that finds no rail below it counts as this far away, m.
+const FAR: f64 = 0.03;
+/// Names of the zones, in the order of the tables.
+pub const ZONES: [Zone; 3] = [Zone::Tread, Zone::Root, Zone::Flange];
+
+/// One contact patch of a wheel. All of it is for the right wheel; mirror it for the left one.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Patch<S> {
+    /// Whether wheel and rail touch in this zone; if not, everything but `penetration` is zero.
+    pub active: bool,
+    /// Penetration along z (m); negative: distance.
+    pub penetration: S,
+    /// Size of the elastic force, N. On the right wheel it acts as N (0, -sin angle, -cos angle) in track axes.
+    pub normal_force: S,
+    /// Angle of the contact plane in the track frame (rad), positive on the flange; `angle + roll` is the one on the wheel.
+    pub angle: S,
+    /// Place on the wheel from its tape circle, + to the field side, m.
+    pub y_wheel: S,
+    /// Rolling radius, m.
+    pub radius: S,
+    /// Semi-axes of the equivalent ellipse along and across the rolling direction, m.
+    pub a: S,
+    pub b: S,
+}
+
+/// A place outside the table: the vehicle has derailed, or an input is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "{what} {value} is outside {least} to {most} of the contact table; the wheel has left the rail or the load is not one of a railway"
+)]
+pub struct OutsideTable {
+    pub what: &'static str,
+    pub value: f64,
+    pub least: f64,
+    pub most: f64,
+}
+
+/// Tables of one wheel-rail pair.
+#[derive(Clone, Debug)]
+pub struct ContactTable {
+    plane: [Axis; 2],
+    /// Height w at which each zone touches, m.
+    gap: Vec<[f64; 3]>,
+    space: [[Axis; 3]; 3],
+    /// Per zone: force / d^1.5, angle, y, radius, a / sqrt d, b / sqrt d over (shift, roll, sqrt(d / d_max)).
+    load: [Vec<[f64; 6]>; 3],
+    /// Places on the wheel where the zones meet: root and flange, tread and root, m.
+    pub borders: [f64; 2],
+}
+
+/// Wheel strips of the three zones.
+pub(super) struct WheelZones {
+    pub strips: [Strips; 3],
+    pub borders: [f64; 2],
+}
+
+impl WheelZones {
+    /// Splits the wheel where the rigid contact of a level wheel jumps: once at the start of the root, once at its end.
+    pub fn new(pair: &PairGeometry, rail: &Profile) -> Result<Self, ContactError> {
+        let wheel = &pair.wheel;
+        let tip = (0..wheel.y.len()).max_by(|&i, &j| wheel.z[i].total_cmp(&wheel.z[j])).unwrap_or(0);
+        let (tip, end) = (wheel.y[tip], wheel.y[wheel.y.len() - 1]);
+        let whole = Strips::new(wheel, [tip, end], 5e-5);
+        let mut gaps = Vec::new();
+        let scan: Vec<RigidContact> = (0..=240)
+            .filter_map(|i| {
+                PairGeometry::gaps(rail, &whole, f64::from(i) * 5e-5, 0.0, &mut gaps);
+                first_touch(&whole, &gaps, pair.radius)
+            })
+            .collect();
+        let borders = [[30.0_f64, 62.0], [4.0, 14.0]].map(|[least, most]| {
+            let mid = |p: &[RigidContact]| 0.5 * (p[0].angle + p[1].angle).to_degrees();
+            let jump = |p: &[RigidContact]| (p[0].y_wheel - p[1].y_wheel).abs();
+            scan.windows(2)
+                .filter(|p| mid(p) > least && mid(p) < most && jump(p) > 1e-3)
+                .max_by(|p, q| jump(p).total_cmp(&jump(q)))
+                .map(|p| 0.5 * (p[0].y_wheel + p[1].y_wheel))
+                .or_else(|| {
+                    let steep = (0.5 * (least + most)).to_radians();
+                    (0..whole.y.len()).rev().find(|&j| whole.angle[j] >= steep).map(|j| whole.y[j])
+                })
+        });
+        let [Some(flange), Some(root)] = borders else {
+            let (what, value) =
+                ("largest angle of the wheel (rad)".into(), whole.angle.iter().fold(0.0, |m: f64, &a| m.max(a)));
+            let remedy = "give a wheel profile with its flange at negative y".into();
+            return Err(ContactError::OutOfRange { what, value, least: 0.8, most: 1.6, remedy });
+        };
+        let limits = [[root, end], [flange, root], [tip, flange]];
+        Ok(Self { strips: [0, 1, 2].map(|z| Strips::new(wheel, limits[z], STRIP[z])), borders: [flange, root] })
+    }
+}
+
+impl ContactTable {
+    /// Builds the tables in parallel.
+    ///
+    /// # Errors
+    /// What [`PairGeometry::placed_rail`] refuses, and profiles that never meet.
+    pub fn build(pair: &PairGeometry, material: &Material) -> Result<Self, ContactError> {
+        let rail = pair.placed_rail()?;
+        let zones = WheelZones::new(pair, &rail)?;
+        let axes = [Axis::new(SHIFT[0], SHIFT[1], SHIFT_INTERVALS), Axis::new(ROLL[0], ROLL[1], ROLL_INTERVALS)];
+        let depth = Axis::new(0.0, 1.0, DEPTH_INTERVALS);
+        let nodes = axes[0].len() * axes[1].len();
+        let columns: Vec<[(f64, Vec<[f64; 6]>); 3]> = (0..nodes)
+            .into_par_iter()
+            .map_init(Vec::new, |gaps, i| {
+                let (shift, roll) = (axes[0].node(i / axes[1].len()), axes[1].node(i % axes[1].len()));
+                [0, 1, 2].map(|z| {
+                    PairGeometry::gaps(&rail, &zones.strips[z], shift, roll, gaps);
+                    column(&zones.strips[z], gaps, pair.radius, material, (DEPTH[z], depth))
+                })
+            })
+            .collect();
+        if columns.iter().all(|c| c[0].0 >= FAR) {
+            return Err(ContactError::NoContact { shift: SHIFT[0], roll: ROLL[0] });
+        }
+        Ok(Self {
+            plane: axes,
+            gap: columns.iter().map(|c| [c[0].0, c[1].0, c[2].0]).collect(),
+            space: [[axes[0], axes[1], depth]; 3],
+            load: [0, 1, 2].map(|z| columns.iter().flat_map(|c| c[z].1.iter().copied()).collect()),
+            borders: zones.borders,
+        })
+    }
+
+    /// The patches of tread, root and flange of the right wheel.
+    ///
+    /// `shift`: lateral shift of the bottom of the tape circle to the field side (m); `w`: its height below the level at
+    /// which a point of z = 0 would touch the top of rail (m, positive pressed in); `roll` of the axle to the track (rad).
+    /// For the point (Y, Z) of the axle line in the plane of the tape circle, in track axes with the tape circles at
+    /// +-`tape_circle`: shift = Y - tape_circle - r0 sin(roll), w = Z + r0 cos(roll). For the left wheel give
+    /// -Y and -roll, and mirror what comes out.
+    ///
+    /// # Errors
+    /// A place outside the table; nothing is extrapolated.
+    #[inline]
+    pub fn patches<S: Scalar>(&self, shift: S, w: S, roll: S) -> Result<[Patch<S>; 3], OutsideTable> {
+        within("shift", shift, SHIFT)?;
+        within("roll", roll, ROLL)?;
+        let gaps = S::lift_n([shift, roll], |x| plane(&self.gap, &self.plane, x));
+        let mut patches = [Patch::default(); 3];
+        for zone in 0..3 {
+            let d = w - gaps[zone];
+            patches[zone].penetration = d;
+            if d.le(S::zero()).all() {
+                continue;
+            }
+            within("penetration", d, [f64::NEG_INFINITY, DEPTH[zone]])?;
+            let d = d.positive();
+            let root = d.sqrt();
+            let [n, angle, y, r, a, b] = self.read(zone, [shift, roll, root / DEPTH[zone].sqrt()]);
+            patches[zone] = Patch {
+                active: true,
+                normal_force: n * d * root,
+                angle: angle - roll,
+                y_wheel: y,
+                radius: r,
+                a: a * root,
+                b: b * root,
+                ..patches[zone]
+            };
+        }
+        Ok(patches)
+    }
+
+    #[inline]
+    fn read<S: Scalar>(&self, zone: usize, x: [S; 3]) -> [S; 6] {
+        let (nodes, axes) = (&self.load[zone], &self.space[zone]);
+        S::lift_n_lazy(x, |x| space(nodes, axes, x), |x| space_slopes(nodes, axes, x))
+    }
+}
+
+#[inline]
+fn within<S: Scalar>(what: &'static str, x: S, [least, most]: [f64; 2]) -> Result<(), OutsideTable> {
+    if S::constant(least).le(x).and(x.le(S::constant(most))).all() {
+        return Ok(());
+    }
+    Err(OutsideTable { what, value: x.value(), least, most })
+}
+
+/// Gap and loads over the depth axis for one zone at one (shift, roll).
+fn column(
+    strips: &Strips,
+    gaps: &[f64],
+    radius: f64,
+    material: &Material,
+    (deepest, axis): (f64, Axis),
+) -> (f64, Vec<[f64; 6]>) {
+    let Some(touch) = first_touch(strips, gaps, radius).filter(|t| t.gap < FAR) else {
+        return (FAR, vec![[0.0; 6]; axis.len()]);
+    };
+    let mut epsilon = 0.5;
+    let mut penetration = Vec::with_capacity(gaps.len());
+    // Only strips that can come into contact at the largest depth.
+    let near = |g: &f64| *g < touch.gap + deepest * 1.3;
+    let first = gaps.iter().position(near).unwrap_or(0);
+    let end = gaps.iter().rposition(near).map_or(first, |e| e + 1);
+    let strips = strips.part(first, end);
+    let mut rows = vec![[0.0; 6]; axis.len()];
+    for (i, row) in rows.iter_mut().enumerate().rev().take_while(|(i, _)| *i > 1) {
+        let d = axis.node(i).powi(2) * deepest;
+        penetration.clear();
+        penetration.extend(gaps[first..end].iter().zip(&strips.cos).map(|(g, cos)| (touch.gap + d - g) * cos));
+        let Some(l) = zone_load(&strips, &penetration, radius, material.pair_modulus(), &mut epsilon) else { continue };
+        *row = [l.force / d.powf(1.5), l.angle, l.y, radius + l.z, l.a / d.sqrt(), l.b / d.sqrt()];
+    }
+    // Patches of a few strips tell nothing: the curve goes on to zero depth and beyond as a line.
+    for i in [1, 0] {
+        rows[i] = core::array::from_fn(|k| 2.0 * rows[i + 1][k] - rows[i + 2][k]);
+    }
+    (touch.gap, rows)
+}
