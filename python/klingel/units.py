@@ -52,11 +52,11 @@ def to_si(value: Quantity, unit: str, *, key: str) -> float:
     """
     try:
         return _convert(value, unit)
-    except _Refused as refused:
+    except _RefusedError as refused:
         raise InputError.single(key, value, refused.message, remedy=refused.remedy) from None
 
 
-class _Refused(Exception):
+class _RefusedError(Exception):
     """Why a value is no quantity of the wanted unit."""
 
     def __init__(self, message: str, remedy: str) -> None:
@@ -68,10 +68,10 @@ class _Refused(Exception):
 def _convert(value: object, unit: str) -> float:
     example = f"give for example '1 {unit}'" if unit != "1" else "give a plain number"
     if isinstance(value, bool) or not isinstance(value, (str, int, float)):
-        raise _Refused(f"is no quantity [{unit}]", example)
+        raise _RefusedError(f"is no quantity [{unit}]", example)
     number = _parse(value, unit, example) if isinstance(value, str) else float(value)
     if not math.isfinite(number):
-        raise _Refused("is not finite", example)
+        raise _RefusedError("is not finite", example)
     return number
 
 
@@ -79,20 +79,20 @@ def _convert(value: object, unit: str) -> float:
 def _parse(text: str, unit: str, example: str) -> float:
     ureg = registry()
     try:
-        quantity = ureg.Quantity(text)
+        quantity: pint.Quantity[Any] = ureg.Quantity(text)
         float(quantity.magnitude)
     except Exception:  # pint raises half a dozen unrelated types, tokenizer and attribute errors among them
-        raise _Refused(f"cannot be read as a quantity [{unit}]", example) from None
+        raise _RefusedError(f"cannot be read as a quantity [{unit}]", example) from None
     if quantity.unitless and unit != "1":
-        raise _Refused(f"has no unit, wanted {unit}", example)
+        raise _RefusedError(f"has no unit, wanted {unit}", example)
     wanted = "" if unit == "1" else unit
     if not quantity.is_compatible_with(wanted):
-        raise _Refused(f"is {_dimension(quantity)}, wanted {unit if wanted else 'a pure number'}", example)
+        raise _RefusedError(f"is {_dimension(quantity)}, wanted {unit if wanted else 'a pure number'}", example)
     # Factors are rounded once: 1.5 mm is 0.0015 exactly as typed, not 0.0015000000000000002.
     return float(f"{quantity.to(wanted).magnitude:.15g}")
 
 
-def _dimension(quantity: pint.Quantity) -> str:
+def _dimension(quantity: pint.Quantity[Any]) -> str:
     names = {
         "[mass]": "a mass",
         "[length]": "a length",
@@ -108,7 +108,7 @@ def _reader(unit: str) -> BeforeValidator:
     def read(value: object) -> float:
         try:
             return _convert(value, unit)
-        except _Refused as refused:
+        except _RefusedError as refused:
             raise PydanticCustomError(
                 "quantity", "{message}", {"message": refused.message, "remedy": refused.remedy}
             ) from None
