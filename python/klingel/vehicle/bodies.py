@@ -80,6 +80,11 @@ class Geometry(Sourced):
     half_wheelbase: PositiveLength
     wheel_radius: PositiveLength
 
+    @property
+    def half_length(self) -> float:
+        """From the vehicle's centre to its first wheelset [m]."""
+        return self.half_bogie_spacing + self.half_wheelbase
+
 
 class WheelProfile(Sourced):
     """Wheel profile by name and how the wheels sit on the axle: flange backs, tape circle from the flange back."""

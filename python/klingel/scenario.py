@@ -1,0 +1,166 @@
+"""A scenario: a vehicle on a track at a speed, with its controllers and the contact and run settings.
+Plain immutable data; `lower` turns it into the spec of the core."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, Protocol, get_args
+
+from klingel.errors import InputError, Problem, nearest
+from klingel.track import Track
+from klingel.units import Quantity, to_si
+from klingel.vehicle import Vehicle
+
+CreepLaw = Literal["fastsim", "polach", "linear"]
+
+RAILS = ("60E1", "UIC60")
+"""Rail profiles known by name."""
+
+ELEMENTS_MAX = 40
+"""Finest FASTSIM grid: elements along, and across, the ellipse."""
+
+RUN_OUT = 2.0
+"""Track kept free before the last and ahead of the first wheelset [m], for the drift of a slow speed hold."""
+
+
+class Strategy(Protocol):
+    """What steers and drives a vehicle."""
+
+    def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any] | None:
+        """The controller as the core's control spec; None leaves the vehicle to itself."""
+        ...
+
+
+@dataclass(frozen=True, init=False)
+class Scenario:
+    """One run: vehicle and track, then keywords; strings carry units, plain numbers are SI.
+
+    vehicle: of the library or of a file; track: where it runs; speed: at the start, held by a slow ideal force;
+    control: strategy of `klingel.control`, None for none; friction: coefficient of all contacts; creep_law with
+    creep_elements (along, across) for FASTSIM; rail, rail_inclination (slope, positive leans inwards), gauge;
+    step: of the integrator; record_interval: of the results; duration: None runs to the end of the track.
+    Errors: InputError with every problem.
+
+    >>> from klingel import library
+    >>> scenario = Scenario(library.vehicle("manchester_coach"), Track.straight("500 m"), speed="108 km/h")
+    >>> scenario.speed, round(scenario.end_time, 2)
+    (30.0, 15.81)
+    """
+
+    vehicle: Vehicle
+    track: Track
+    speed: float
+    control: Strategy | None
+    friction: float
+    creep_law: CreepLaw
+    creep_elements: tuple[int, int]
+    rail: str
+    rail_inclination: float
+    gauge: float
+    step: float
+    record_interval: float
+    duration: float | None
+
+    def __init__(
+        self,
+        vehicle: Vehicle,
+        track: Track,
+        *,
+        speed: Quantity,
+        control: Strategy | None = None,
+        friction: Quantity = 0.35,
+        creep_law: CreepLaw = "fastsim",
+        creep_elements: tuple[int, int] = (16, 16),
+        rail: str = "60E1",
+        rail_inclination: Quantity = 0.025,
+        gauge: Quantity = "1435 mm",
+        step: Quantity = "0.5 ms",
+        record_interval: Quantity = "1 ms",
+        duration: Quantity | None = None,
+    ) -> None:
+        values: dict[str, Any] = {
+            "vehicle": vehicle,
+            "track": track,
+            "speed": to_si(speed, "m/s", key="speed"),
+            "control": control,
+            "friction": to_si(friction, "1", key="friction"),
+            "creep_law": creep_law,
+            "creep_elements": tuple(creep_elements),
+            "rail": rail,
+            "rail_inclination": to_si(rail_inclination, "1", key="rail_inclination"),
+            "gauge": to_si(gauge, "m", key="gauge"),
+            "step": to_si(step, "s", key="step"),
+            "record_interval": to_si(record_interval, "s", key="record_interval"),
+            "duration": None if duration is None else to_si(duration, "s", key="duration"),
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        problems = list(_problems(self))
+        if problems:
+            raise InputError(problems)
+
+    @classmethod
+    def read(cls, path: str | Path) -> Scenario:
+        """The scenario of a TOML file (see `klingel.scenario_file`); errors: InputError with file, key, value, remedy."""
+        from klingel.scenario_file import read
+
+        return read(path)
+
+    def replace(self, **changes: Any) -> Scenario:
+        """The same scenario with other values."""
+        values = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        return Scenario(**(values | changes))
+
+    @property
+    def start(self) -> float:
+        """Arc length of the vehicle's centre at the start [m]: the last wheelset stands just inside the track."""
+        return self.vehicle.geometry.half_length + RUN_OUT
+
+    @property
+    def end_time(self) -> float:
+        """Duration of the run [s]; by default until the first wheelset is at the end of the track."""
+        if self.duration is not None:
+            return self.duration
+        return (self.track.length - 2.0 * self.start) / self.speed
+
+
+def _problems(scenario: Scenario) -> Iterator[Problem]:
+    positive = {"speed": "m/s", "friction": "1", "gauge": "m", "step": "s", "record_interval": "s", "duration": "s"}
+    for key, unit in positive.items():
+        value = getattr(scenario, key)
+        if value is not None and not value > 0.0:
+            yield Problem(key, value, f"must be positive [{unit}]", "give a value above zero")
+    if scenario.friction > 1.5:
+        yield Problem("friction", scenario.friction, "is no coefficient of friction", "give 0.05 to 0.6")
+    if not abs(scenario.rail_inclination) <= 0.1:
+        yield Problem(
+            "rail_inclination", scenario.rail_inclination, "is too steep", "give a slope such as 1/40 = 0.025"
+        )
+    if scenario.creep_law not in get_args(CreepLaw):
+        yield Problem("creep_law", scenario.creep_law, "is not known", nearest(scenario.creep_law, get_args(CreepLaw)))
+    if scenario.rail not in RAILS:
+        yield Problem("rail", scenario.rail, "is not known", nearest(scenario.rail, RAILS))
+    elements = scenario.creep_elements
+    if len(elements) != 2 or any(not isinstance(n, int) or not 1 <= n <= ELEMENTS_MAX for n in elements):
+        remedy = f"give two whole numbers from 1 to {ELEMENTS_MAX}"
+        yield Problem("creep_elements", elements, "is no grid (along, across)", remedy)
+    ratio = scenario.record_interval / scenario.step if scenario.step > 0.0 else 1.0
+    if abs(ratio - round(ratio)) > 1e-9 or ratio < 0.5:
+        remedy = f"give a multiple of the step {scenario.step:g} s"
+        yield Problem("record_interval", scenario.record_interval, "is no multiple of the step", remedy)
+    yield from _run_problems(scenario)
+
+
+def _run_problems(scenario: Scenario) -> Iterator[Problem]:
+    if not scenario.speed > 0.0:
+        return
+    room = scenario.track.length - 2.0 * scenario.start
+    if room <= 0.0:
+        remedy = f"give more than {2.0 * scenario.start:.1f} m, the vehicle's length included"
+        yield Problem("track", f"{scenario.track.length:g} m", "is too short for the vehicle", remedy)
+    elif scenario.duration is not None and scenario.duration * scenario.speed > room:
+        remedy = f"give at most {room / scenario.speed:.2f} s, or lengthen the track"
+        yield Problem("duration", scenario.duration, "runs over the end of the track [s]", remedy)
