@@ -101,8 +101,8 @@ pub struct PairSpec {
     pub rail_inclination: f64,
     /// 14 mm below the top of rail \[m\].
     pub gauge: f64,
-    /// Half distance of the tape circles \[m\].
-    pub half_tape_distance: f64,
+    /// Distance of the flange backs of the two wheels \[m\]; the tape circles lie 70 mm outside them.
+    pub flange_back: f64,
     /// Nominal wheel radius \[m\].
     pub radius: f64,
 }
