@@ -1,6 +1,7 @@
 //! Wheel-rail contact: profile -> geometry of the pair -> elastic normal contact (tables) -> creep forces.
 //! Everything is written for the right wheel; the left one is its mirror image (y -> -y, roll -> -roll).
 
+pub mod creep;
 pub mod geometry;
 pub mod hertz;
 pub mod normal;
@@ -8,6 +9,7 @@ pub mod profile;
 mod spline;
 pub mod table;
 
+pub use creep::{CreepForce, CreepLaw, RollingContact};
 pub use geometry::PairGeometry;
 pub use normal::Zone;
 pub use profile::Profile;

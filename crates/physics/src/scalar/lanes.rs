@@ -136,6 +136,6 @@ impl Scalar for Lanes {
     }
     #[inline(always)]
     fn select(mask: LanesMask, a: Self, b: Self) -> Self {
-        Self(mask.0.blend(a.0, b.0))
+        Self(mask.0.bitselect(a.0, b.0))
     }
 }

@@ -1,0 +1,164 @@
+//! Kalker's creepage coefficients C11, C22, C23 and C33 over the ratio of the semi-axes and Poisson's ratio.
+//! Source: Kalker, Three-Dimensional Elastic Bodies in Rolling Contact (1990), table E.3 and its asymptotes; C33: CONTACT.
+
+use crate::Scalar;
+use core::f64::consts::{LN_2, PI};
+
+/// (a/b, [C11, C22, C23] at Poisson's ratios 0, 0.25 and 0.5, C33 at 0.28).
+///
+/// The first nine numbers are table E.3. C33 was extrapolated to vanishing spin from runs of CONTACT (40 x 40 elements).
+#[rustfmt::skip]
+const TABLE: [(f64, [[f64; 3]; 3], f64); 19] = [
+    (0.1, [[2.51, 3.31, 4.85], [2.51, 2.52, 2.53], [0.334, 0.473, 0.731]], 8.7937),
+    (0.2, [[2.59, 3.37, 4.81], [2.59, 2.63, 2.66], [0.483, 0.603, 0.809]], 4.5152),
+    (0.3, [[2.68, 3.44, 4.8], [2.68, 2.75, 2.81], [0.607, 0.715, 0.889]], 3.1121),
+    (0.4, [[2.78, 3.53, 4.82], [2.78, 2.88, 2.98], [0.72, 0.823, 0.977]], 2.3948),
+    (0.5, [[2.88, 3.62, 4.83], [2.88, 3.01, 3.14], [0.827, 0.929, 1.07]], 1.9866),
+    (0.6, [[2.98, 3.72, 4.91], [2.98, 3.14, 3.31], [0.93, 1.03, 1.18]], 1.7251),
+    (0.7, [[3.09, 3.81, 4.97], [3.09, 3.28, 3.48], [1.03, 1.14, 1.29]], 1.5111),
+    (0.8, [[3.19, 3.91, 5.05], [3.19, 3.41, 3.65], [1.13, 1.25, 1.4]], 1.371),
+    (0.9, [[3.29, 4.01, 5.12], [3.29, 3.54, 3.82], [1.23, 1.36, 1.51]], 1.2628),
+    (1.0, [[3.4, 4.12, 5.2], [3.4, 3.67, 3.98], [1.33, 1.47, 1.63]], 1.1769),
+    (1.0 / 0.9, [[3.51, 4.22, 5.3], [3.51, 3.81, 4.16], [1.44, 1.59, 1.77]], 1.1),
+    (1.0 / 0.8, [[3.65, 4.36, 5.42], [3.65, 3.99, 4.39], [1.58, 1.75, 1.94]], 1.0236),
+    (1.0 / 0.7, [[3.82, 4.54, 5.58], [3.82, 4.21, 4.67], [1.76, 1.95, 2.18]], 0.9478),
+    (1.0 / 0.6, [[4.06, 4.78, 5.8], [4.06, 4.5, 5.04], [2.01, 2.23, 2.5]], 0.8795),
+    (1.0 / 0.5, [[4.37, 5.1, 6.11], [4.37, 4.9, 5.56], [2.35, 2.62, 2.96]], 0.7974),
+    (1.0 / 0.4, [[4.84, 5.57, 6.57], [4.84, 5.48, 6.31], [2.88, 3.24, 3.7]], 0.7256),
+    (1.0 / 0.3, [[5.57, 6.34, 7.34], [5.57, 6.4, 7.51], [3.79, 4.32, 5.01]], 0.6567),
+    (1.0 / 0.2, [[6.96, 7.78, 8.82], [6.96, 8.14, 9.79], [5.72, 6.63, 7.89]], 0.5885),
+    (1.0 / 0.1, [[10.7, 11.7, 12.9], [10.7, 12.8, 16.0], [12.2, 14.6, 18.0]], 0.5479),
+];
+/// The smooth curves reach from a/b = 1/LIMIT to LIMIT; beyond, the asymptotes are evaluated directly.
+const LIMIT: f64 = 1e3;
+const INTERVALS: usize = 256;
+
+/// The coefficients of one material as smooth functions of a/b.
+///
+/// ```
+/// use klingel_physics::contact::creep::Kalker;
+/// let [c11, c22, c23, _] = Kalker::new(0.25).at(1.0_f64);
+/// assert!((c11 - 4.12).abs() < 1e-9 && (c22 - 3.67).abs() < 1e-9 && (c23 - 1.47).abs() < 1e-9);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Kalker {
+    poisson: f64,
+    /// [C, dC/d ln(a/b)] at evenly spaced ln(a/b).
+    nodes: Vec<[[f64; 2]; 4]>,
+}
+
+impl Kalker {
+    /// The coefficients for Poisson's ratio `poisson` (0 to 0.5): 1/C is quadratic in it, as in CONTACT.
+    pub fn new(poisson: f64) -> Self {
+        let curve = |x: f64| coefficients(poisson, x);
+        let (step, h) = (2.0 * LIMIT.ln() / INTERVALS as f64, 1e-5);
+        let nodes = (0..=INTERVALS)
+            .map(|i| {
+                let x = i as f64 * step - LIMIT.ln();
+                let (c, up, down) = (curve(x), curve(x + h), curve(x - h));
+                [0, 1, 2, 3].map(|k| [c[k], (up[k] - down[k]) / (2.0 * h)])
+            })
+            .collect();
+        Self { poisson, nodes }
+    }
+
+    /// [C11, C22, C23, C33] for semi-axes with the ratio a/b.
+    #[inline]
+    pub fn at<S: Scalar>(&self, a_over_b: S) -> [S; 4] {
+        S::lift_n_lazy(
+            [a_over_b],
+            |[g]| self.read(g).map(|c| c[0]),
+            |[g]| {
+                let c = self.read(g);
+                (c.map(|c| c[0]), c.map(|c| [c[1]]))
+            },
+        )
+    }
+
+    /// [C, dC/d(a/b)] of the four coefficients.
+    #[inline]
+    fn read(&self, g: f64) -> [[f64; 2]; 4] {
+        let x = g.ln();
+        let place = (x / LIMIT.ln() + 1.0) * 0.5 * INTERVALS as f64;
+        if !(place >= 0.0 && place < INTERVALS as f64) {
+            let (c, up, down) = (
+                coefficients(self.poisson, x),
+                coefficients(self.poisson, x + 1e-5),
+                coefficients(self.poisson, x - 1e-5),
+            );
+            return [0, 1, 2, 3].map(|k| [c[k], (up[k] - down[k]) / 2e-5 / g]);
+        }
+        let k = place as usize;
+        let (t, h) = (place - k as f64, 2.0 * LIMIT.ln() / INTERVALS as f64);
+        let (lo, hi) = (&self.nodes[k], &self.nodes[k + 1]);
+        [0, 1, 2, 3].map(|i| {
+            let (value, slope) = hermite(t, h, lo[i], hi[i]);
+            [value, slope / g]
+        })
+    }
+}
+
+/// Cubic through two (value, slope) pairs a distance `h` apart: value and slope at t = 0..1.
+fn hermite(t: f64, h: f64, lo: [f64; 2], hi: [f64; 2]) -> (f64, f64) {
+    let chord = (hi[0] - lo[0]) / h;
+    let (m0, m1) = (lo[1] - chord, hi[1] - chord);
+    (
+        lo[0] + t * h * (chord + (1.0 - t) * (m0 * (1.0 - t) - m1 * t)),
+        chord + m0 * (1.0 - t) * (1.0 - 3.0 * t) + m1 * t * (3.0 * t - 2.0),
+    )
+}
+
+/// The table's row `i` at Poisson's ratio `nu`, as logarithms: ln(a/b) and the four ln C.
+fn row(i: usize, nu: f64) -> (f64, [f64; 4]) {
+    let (ratio, c, c33) = TABLE[i];
+    let u = 4.0 * nu;
+    let quadratic = |[c0, c1, c2]: [f64; 3]| {
+        let (f0, f1, f2) = (1.0 / c0, 1.0 / c1, 1.0 / c2);
+        -(0.5 * f0 * (u - 1.0) * (u - 2.0) - f1 * u * (u - 2.0) + 0.5 * f2 * u * (u - 1.0)).ln()
+    };
+    (f64::ln(ratio), [quadratic(c[0]), quadratic(c[1]), quadratic(c[2]), c33.ln()])
+}
+
+/// Slope of ln C over ln(a/b) at row `i` by the parabola through it and its neighbours.
+fn row_slope(i: usize, nu: f64) -> [f64; 4] {
+    let i = i.clamp(1, TABLE.len() - 2);
+    let ((x0, f0), (x1, f1), (x2, f2)) = (row(i - 1, nu), row(i, nu), row(i + 1, nu));
+    [0, 1, 2, 3].map(|k| {
+        let (left, right) = ((f1[k] - f0[k]) / (x1 - x0), (f2[k] - f1[k]) / (x2 - x1));
+        (left * (x2 - x1) + right * (x1 - x0)) / (x2 - x0)
+    })
+}
+
+/// The four coefficients at x = ln(a/b): cubic in ln C within the table, asymptotes joined to it outside.
+fn coefficients(nu: f64, x: f64) -> [f64; 4] {
+    let last = TABLE.len() - 1;
+    let k = (0..last).rev().find(|&i| row(i, nu).0 <= x).unwrap_or(0);
+    let (lo, hi) = (row(k, nu), row(k + 1, nu));
+    if x >= row(0, nu).0 && x <= row(last, nu).0 {
+        let (s0, s1, h) = (row_slope(k, nu), row_slope(k + 1, nu), hi.0 - lo.0);
+        return [0, 1, 2, 3].map(|i| hermite((x - lo.0) / h, h, [lo.1[i], s0[i]], [hi.1[i], s1[i]]).0.exp());
+    }
+    let (x0, c0) = row(if x < 0.0 { 0 } else { last }, nu);
+    let (asymptote, joint) = (asymptotes(nu, x), asymptotes(nu, x0));
+    // The last row is off its asymptote by a few percent; the ratio of the two tends to one as the square root of b/a or a/b.
+    let fade = (-0.5 * (x - x0).abs()).exp();
+    [0, 1, 2, 3].map(|i| asymptote[i] * ((c0[i] - joint[i].ln()) * fade).exp())
+}
+
+/// Kalker's asymptotes for slender ellipses; C33 levels off near 0.5 in its last rows and is taken to stay there.
+fn asymptotes(nu: f64, x: f64) -> [f64; 4] {
+    if x < 0.0 {
+        let g = x.exp();
+        let c23 = PI * g.sqrt() / (3.0 * (1.0 - nu)) * (1.0 + nu * ((16.0 / g).ln() - 5.0));
+        return [PI * PI / (4.0 * (1.0 - nu)), PI * PI / 4.0, c23, PI * PI / (16.0 * (1.0 - nu) * g)];
+    }
+    let (g, l) = ((-x).exp(), 16.0_f64.ln() + 2.0 * x);
+    let (p, q) = (l - 2.0 * nu, (1.0 - nu) * l + 2.0 * nu);
+    let edge = 3.0 - 2.0 * LN_2;
+    [
+        2.0 * PI / (p * g) * (1.0 + edge / p),
+        2.0 * PI / g * (1.0 + (1.0 - nu) * edge / q) / q,
+        2.0 * PI / (3.0 * g.powf(1.5) * ((1.0 - nu) * l - 2.0 + 4.0 * nu)),
+        0.5,
+    ]
+}

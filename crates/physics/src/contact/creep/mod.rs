@@ -1,0 +1,108 @@
+//! Creep forces of one elliptic contact patch: linear, Polach, FASTSIM, chosen by `CreepLaw`.
+//! Creepages of the wheel over the rail; a positive creepage gives a negative force on the wheel.
+
+mod fastsim;
+mod kalker;
+mod linear;
+mod polach;
+
+pub use fastsim::MOST_ELEMENTS;
+pub use kalker::Kalker;
+
+use super::{ContactError, Material};
+use crate::{Dual, Scalar};
+use fastsim::{Grid, RunStrips};
+
+/// How creep forces are computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CreepLaw {
+    /// Kalker's linear theory, without a friction limit.
+    Linear,
+    /// Polach's closed form; gives no moment.
+    Polach,
+    /// Kalker's simplified theory with `nx` elements along each of `ny` strips.
+    Fastsim { nx: usize, ny: usize },
+}
+
+impl Default for CreepLaw {
+    fn default() -> Self {
+        Self::Fastsim { nx: 16, ny: 16 }
+    }
+}
+
+/// One rolling contact patch.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RollingContact<S> {
+    /// Semi-axes along and across the rolling direction, m.
+    pub a: S,
+    pub b: S,
+    /// Normal force, N, positive.
+    pub normal_force: S,
+    /// Friction coefficient.
+    pub friction: S,
+    /// Longitudinal and lateral creepage, and spin (1/m) about the z axis (down).
+    pub xi: S,
+    pub eta: S,
+    pub phi: S,
+}
+
+/// A creep law made ready for one material.
+///
+/// ```
+/// use klingel_physics::contact::{CreepForce, CreepLaw, Material};
+/// use klingel_physics::contact::creep::RollingContact;
+/// let law = CreepForce::new(CreepLaw::default(), &Material::STEEL).unwrap();
+/// let patch = RollingContact { a: 6e-3, b: 4e-3, normal_force: 5e4, friction: 0.3, xi: 1e-3, eta: 0.0, phi: 0.0 };
+/// let [fx, fy, mz] = law.force(&patch);
+/// assert!(fx < -5e3 && fx > -1.5e4 && fy == 0.0 && mz.abs() < 1e-9);
+/// ```
+#[derive(Clone, Debug)]
+pub struct CreepForce {
+    law: CreepLaw,
+    shear_modulus: f64,
+    kalker: Kalker,
+    grid: Grid,
+}
+
+impl CreepForce {
+    /// # Errors
+    /// No elements or more than `MOST_ELEMENTS` either way; Poisson's ratio outside 0 to 0.5.
+    pub fn new(law: CreepLaw, material: &Material) -> Result<Self, ContactError> {
+        let refuse = |what: &str, value: f64, least: f64, most: f64, remedy: &str| {
+            Err(ContactError::OutOfRange { what: what.into(), value, least, most, remedy: remedy.into() })
+        };
+        if !(0.0..=0.5).contains(&material.poisson) {
+            return refuse("Poisson's ratio", material.poisson, 0.0, 0.5, "steel has 0.28");
+        }
+        let (nx, ny) = if let CreepLaw::Fastsim { nx, ny } = law { (nx, ny) } else { (1, 1) };
+        for n in [nx, ny] {
+            if n == 0 || n > MOST_ELEMENTS {
+                return refuse("number of FASTSIM elements", n as f64, 1.0, MOST_ELEMENTS as f64, "16 x 16 is usual");
+            }
+        }
+        let (kalker, grid) = (Kalker::new(material.poisson), Grid::new(nx, ny));
+        Ok(Self { law, shear_modulus: material.shear_modulus(), kalker, grid })
+    }
+
+    /// [Fx, Fy, Mz] on the wheel, N and N m, in the axes of the contact plane (x forward, y right, z down).
+    pub fn force<S: Scalar>(&self, c: &RollingContact<S>) -> [S; 3] {
+        // A narrow dual pass and the chain rule: wide duals would run every strip with all their slopes.
+        S::lift_n_lazy(
+            [c.a, c.b, c.normal_force, c.friction, c.xi, c.eta, c.phi],
+            |x| self.evaluate(x),
+            |x| {
+                let f = self.evaluate(core::array::from_fn(|i| Dual::<7>::variable(x[i], i)));
+                (f.map(|f| f.value), f.map(|f| f.slope))
+            },
+        )
+    }
+
+    fn evaluate<T: RunStrips>(&self, [a, b, normal_force, friction, xi, eta, phi]: [T; 7]) -> [T; 3] {
+        let c = RollingContact { a, b, normal_force, friction, xi, eta, phi };
+        match self.law {
+            CreepLaw::Linear => linear::linear(&self.kalker, self.shear_modulus, &c),
+            CreepLaw::Polach => polach::polach(&self.kalker, self.shear_modulus, &c),
+            CreepLaw::Fastsim { .. } => fastsim::fastsim(&self.kalker, self.shear_modulus, &self.grid, &c),
+        }
+    }
+}
