@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 class KlingelError(Exception):
@@ -53,6 +53,10 @@ class InputError(KlingelError, ValueError):
     def single(cls, key: str, value: object, message: str, *, remedy: str = "", file: str | None = None) -> InputError:
         """An InputError with one problem."""
         return cls([Problem(key, value, message, remedy)], file=file)
+
+    def within(self, key: str) -> InputError:
+        """The same problems, their keys said to be inside `key`."""
+        return InputError((replace(p, key=f"{key}.{p.key}" if p.key else key) for p in self.problems), file=self.file)
 
     def in_file(self, file: str) -> InputError:
         """The same problems, said to be in `file`."""

@@ -104,7 +104,7 @@ class Scenario:
 
     @classmethod
     def read(cls, path: str | Path) -> Scenario:
-        """The scenario of a TOML file (see `klingel.scenario_file`); errors: InputError with file, key, value, remedy."""
+        """The scenario of a TOML file (see `klingel.scenario_file`); errors: InputError."""
         from klingel.scenario_file import read
 
         return read(path)
@@ -144,7 +144,7 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
     if scenario.rail not in RAILS:
         yield Problem("rail", scenario.rail, "is not known", nearest(scenario.rail, RAILS))
     elements = scenario.creep_elements
-    if len(elements) != 2 or any(not isinstance(n, int) or not 1 <= n <= ELEMENTS_MAX for n in elements):
+    if len(elements) != 2 or any(n not in range(1, ELEMENTS_MAX + 1) for n in elements):
         remedy = f"give two whole numbers from 1 to {ELEMENTS_MAX}"
         yield Problem("creep_elements", elements, "is no grid (along, across)", remedy)
     ratio = scenario.record_interval / scenario.step if scenario.step > 0.0 else 1.0

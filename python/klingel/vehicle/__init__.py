@@ -9,6 +9,7 @@ from typing import Any, Self
 from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 
+from klingel.errors import InputError
 from klingel.records import Parameter, Record, parameters, read_toml, validated
 from klingel.vehicle.bodies import AxleBridge, Geometry, RigidBody, SolidWheelset, WheelProfile
 from klingel.vehicle.drive import Drive, RunningResistance, SteeringActuator
@@ -75,8 +76,14 @@ class Vehicle(Record):
         """Of one solid wheelset, or of one axle bridge with its wheels [kg]."""
         if self.axle_bridge is not None:
             return self.axle_bridge.total_mass
-        assert self.wheelset is not None
-        return self.wheelset.mass
+        return self.solid_wheelset.mass
+
+    @property
+    def solid_wheelset(self) -> SolidWheelset:
+        """The wheelset of a vehicle with solid ones; errors: InputError for independent wheels."""
+        if self.wheelset is None:
+            raise InputError.single("wheelset", None, f"{self.name} has none", remedy="take its axle_bridge")
+        return self.wheelset
 
     @property
     def total_mass(self) -> float:

@@ -1,0 +1,305 @@
+"""From railway words to the core's spec: a Scenario becomes bodies, joints, force elements, wheels and drives.
+The design position is that of the loaded vehicle on straight level track; x from its centre, z down from top of rail."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from klingel.drives import operating_point, running_resistance
+from klingel.scenario import Scenario
+from klingel.track import CANT_BASE, Track
+from klingel.vehicle import Vehicle
+
+GRAVITY = 9.81
+"""[m/s2], as the study's cant deficiencies assume."""
+
+CONTACT_DISSIPATION = 3.0
+"""Contact damping over elastic force and approach speed (Hunt and Crossley) [s/m]: about 1 % of critical for a
+wheelset on its contact springs; this project's choice, steel on steel has little."""
+
+HOLD_FREQUENCY = 0.1
+"""Of the ideal force that holds the speed [Hz]: slow against everything that the study looks at; critically damped."""
+
+Spec = dict[str, Any]
+Point = list[float]
+
+
+class Axle(NamedTuple):
+    """Where one wheelset sits: dotted name, its bogie, x of both [m]; `inward` points to the bogie's centre."""
+
+    name: str
+    bogie: str
+    x: float
+    bogie_x: float
+
+    @property
+    def inward(self) -> float:
+        return 1.0 if self.bogie_x > self.x else -1.0
+
+
+SIDES = (("left", -1.0), ("right", 1.0))
+
+
+def axles(vehicle: Vehicle) -> tuple[Axle, ...]:
+    """The four wheelsets from the front.
+
+    >>> from klingel import library
+    >>> [axle.name for axle in axles(library.vehicle("manchester_coach"))][:2]
+    ['bogie1.wheelset1', 'bogie1.wheelset2']
+    """
+    plan = vehicle.geometry
+    return tuple(
+        Axle(f"bogie{i}.wheelset{j}", f"bogie{i}", xb + dx, xb)
+        for i, xb in ((1, plan.half_bogie_spacing), (2, -plan.half_bogie_spacing))
+        for j, dx in ((1, plan.half_wheelbase), (2, -plan.half_wheelbase))
+    )
+
+
+def lower(scenario: Scenario) -> Spec:
+    """The core's spec of a scenario, SI throughout, ready for JSON.
+
+    Springs carry their share of the weight in the design position, so that this is nearly the static equilibrium.
+    """
+    vehicle = scenario.vehicle
+    wheels = axles(vehicle)
+    control = scenario.control.lower(vehicle, scenario.track, scenario.speed) if scenario.control else None
+    return {
+        "name": vehicle.name,
+        "gravity": GRAVITY,
+        "speed": scenario.speed,
+        "track": _track(scenario.track, scenario.start),
+        "bodies": [*_bodies(vehicle), *(_wheelset(vehicle, axle) for axle in wheels)],
+        "contact_pairs": [_pair(scenario)],
+        "wheels": [_wheel(vehicle, axle, side, scenario.friction) for axle in wheels for side, _ in SIDES],
+        "creep": {
+            "law": scenario.creep_law,
+            "elements": list(scenario.creep_elements),
+            "contact_dissipation": CONTACT_DISSIPATION,
+        },
+        "bushings": [*_primary(vehicle, wheels), *_secondary(vehicle)],
+        "maxwells": [*_primary_dampers(vehicle, wheels), *_secondary_dampers(vehicle)],
+        "stops": [_lateral_stop(vehicle, bogie, x) for bogie, x in _bogies(vehicle)],
+        "actuators": list(_actuators(vehicle, wheels)),
+        "drives": list(_drives(vehicle, wheels, scenario.speed)),
+        "drag": _drag(vehicle),
+        "hold": _hold(vehicle),
+        "control": control,
+        "run": {
+            "duration": scenario.end_time,
+            "step": scenario.step,
+            "record_interval": scenario.record_interval,
+            "equilibrium": True,
+            "kicks": [],
+        },
+    }
+
+
+def _track(track: Track, start: float) -> Spec:
+    segments = [{"length": s.length, "curvature": list(s.curvature), "cant": list(s.cant)} for s in track.segments]
+    return {"segments": segments, "start": start, "cant_base": CANT_BASE}
+
+
+def _bogies(vehicle: Vehicle) -> tuple[tuple[str, float], ...]:
+    half = vehicle.geometry.half_bogie_spacing
+    return (("bogie1", half), ("bogie2", -half))
+
+
+def _bodies(vehicle: Vehicle) -> Iterator[Spec]:
+    for name, part, x in (("body", vehicle.body, 0.0), *((n, vehicle.bogie, x) for n, x in _bogies(vehicle))):
+        inertia = [part.inertia.roll, part.inertia.pitch, part.inertia.yaw]
+        yield {"name": name, "mass": part.mass, "inertia": inertia, "position": [x, 0.0, -part.height]}
+
+
+def _wheelset(vehicle: Vehicle, axle: Axle) -> Spec:
+    position = [axle.x, 0.0, -vehicle.geometry.wheel_radius]
+    if vehicle.axle_bridge is not None:
+        bridge = vehicle.axle_bridge
+        rotors = [{"name": side, "inertia": bridge.wheel.inertia.spin} for side, _ in SIDES]
+        inertia, mass, pitches = list(bridge.total_inertia), bridge.total_mass, True
+    else:
+        solid = vehicle.solid_wheelset
+        rotors = [{"name": "spin", "inertia": solid.inertia.spin}]
+        # Its frame does not pitch: the moment of inertia about y belongs to the spin alone.
+        inertia, mass, pitches = [solid.inertia.roll, 0.0, solid.inertia.yaw], solid.mass, False
+    return {
+        "name": axle.name,
+        "mass": mass,
+        "inertia": inertia,
+        "position": position,
+        "pitches": pitches,
+        "rotors": rotors,
+    }
+
+
+def _pair(scenario: Scenario) -> Spec:
+    vehicle = scenario.vehicle
+    return {
+        "wheel": {"named": vehicle.wheel_profile.name.lower()},
+        "rail": {"named": scenario.rail.lower()},
+        "rail_inclination": scenario.rail_inclination,
+        "gauge": scenario.gauge,
+        "flange_back": vehicle.wheel_profile.flange_back_distance,
+        "radius": vehicle.geometry.wheel_radius,
+    }
+
+
+def _wheel(vehicle: Vehicle, axle: Axle, side: str, friction: float) -> Spec:
+    rotor = side if vehicle.independent_wheels else "spin"
+    name = f"{axle.name}.{side}"
+    return {"name": name, "body": axle.name, "rotor": rotor, "side": side, "pair": 0, "friction": friction}
+
+
+def _joint(a: str, b: str, x: float, y: float, height: float) -> Spec:
+    return {"a": a, "b": b, "point": [x, y, -height]}
+
+
+def _primary(vehicle: Vehicle, wheels: tuple[Axle, ...]) -> Iterator[Spec]:
+    primary = vehicle.primary
+    load = (0.5 * vehicle.body.mass + vehicle.bogie.mass) * GRAVITY / 4.0
+    k = primary.stiffness
+    for axle in wheels:
+        for side, sign in SIDES:
+            yield {
+                "name": f"{axle.name}.primary_{side}",
+                "joint": _joint(axle.bogie, axle.name, axle.x, sign * primary.half_spacing, primary.height),
+                "stiffness": [k.x, k.y, k.z],
+                "preload": [0.0, 0.0, load],
+            }
+        if vehicle.torque_link is not None:
+            link = vehicle.torque_link
+            x = axle.x + axle.inward * link.offset
+            yield {
+                "name": f"{axle.name}.torque_link",
+                "joint": _joint(axle.bogie, axle.name, x, 0.0, vehicle.geometry.wheel_radius),
+                "stiffness": [0.0, 0.0, link.stiffness],
+                "damping": [0.0, 0.0, link.damping],
+            }
+
+
+def _primary_dampers(vehicle: Vehicle, wheels: tuple[Axle, ...]) -> Iterator[Spec]:
+    primary = vehicle.primary
+    for axle in wheels:
+        for side, sign in SIDES:
+            joint = _joint(axle.bogie, axle.name, axle.x, sign * primary.half_spacing, primary.height)
+            for axis in ("x", "y", "z"):
+                damping = getattr(primary.damping, axis)
+                if damping > 0.0:
+                    name = f"{axle.name}.primary_damper_{axis}_{side}"
+                    yield _maxwell(name, joint, axis, getattr(primary.series_stiffness, axis), damping)
+
+
+def _maxwell(name: str, joint: Spec, axis: str, stiffness: float, damping: float) -> Spec:
+    return {"name": name, "joint": joint, "axis": axis, "stiffness": stiffness, "damping": damping}
+
+
+def _secondary(vehicle: Vehicle) -> Iterator[Spec]:
+    secondary = vehicle.secondary
+    k, bending = secondary.stiffness, secondary.bending_stiffness
+    load = vehicle.body.mass * GRAVITY / 4.0
+    for bogie, x in _bogies(vehicle):
+        for side, sign in SIDES:
+            yield {
+                "name": f"{bogie}.secondary_{side}",
+                "joint": _joint(bogie, "body", x, sign * secondary.half_spacing, secondary.height),
+                "stiffness": [k.x, k.y, k.z],
+                "rotational_stiffness": [bending, bending, 0.0],
+                "preload": [0.0, 0.0, -load],
+            }
+        yield {
+            "name": f"{bogie}.anti_roll_bar",
+            "joint": _joint(bogie, "body", x, 0.0, secondary.height),
+            "rotational_stiffness": [vehicle.anti_roll_bar.stiffness, 0.0, 0.0],
+        }
+        yield {
+            "name": f"{bogie}.traction_rod",
+            "joint": _joint(bogie, "body", x, 0.0, vehicle.traction_rod.height),
+            "stiffness": [vehicle.traction_rod.stiffness, 0.0, 0.0],
+        }
+
+
+def _secondary_dampers(vehicle: Vehicle) -> Iterator[Spec]:
+    secondary, rod, yaw = vehicle.secondary, vehicle.traction_rod, vehicle.yaw_damper
+    for bogie, x in _bogies(vehicle):
+        rod_joint = _joint(bogie, "body", x, 0.0, rod.height)
+        yield _maxwell(f"{bogie}.traction_rod_damper", rod_joint, "x", rod.series_stiffness, rod.damping)
+        for side, sign in SIDES:
+            for axis, damper in (("y", secondary.lateral_damper), ("z", secondary.vertical_damper)):
+                joint = _joint(bogie, "body", x, sign * secondary.half_spacing, damper.height)
+                word = "lateral" if axis == "y" else "vertical"
+                name = f"{bogie}.{word}_damper_{side}"
+                yield _maxwell(name, joint, axis, damper.series_stiffness, damper.damping)
+            if yaw is not None:
+                joint = _joint(bogie, "body", x, sign * yaw.half_spacing, yaw.height)
+                damper_spec = _maxwell(f"{bogie}.yaw_damper_{side}", joint, "x", yaw.series_stiffness, yaw.damping)
+                yield damper_spec | {"blow_off": {"force": yaw.blow_off_force, "damping": yaw.blow_off_damping}}
+
+
+def _lateral_stop(vehicle: Vehicle, bogie: str, x: float) -> Spec:
+    stop = vehicle.lateral_stop
+    return {
+        "name": f"{bogie}.lateral_stop",
+        "joint": _joint(bogie, "body", x, 0.0, stop.height),
+        "axis": "y",
+        "deflection": list(stop.deflection),
+        "force": list(stop.force),
+    }
+
+
+def _actuators(vehicle: Vehicle, wheels: tuple[Axle, ...]) -> Iterator[Spec]:
+    steering = vehicle.steering
+    if steering is None:
+        return
+    for axle in wheels:
+        for side, sign in SIDES:
+            y = sign * steering.half_spacing
+            yield {
+                "name": f"{axle.name}.actuator_{side}",
+                "joint": _joint(axle.bogie, axle.name, axle.x, y, vehicle.geometry.wheel_radius),
+                "natural_frequency": 2.0 * math.pi * steering.bandwidth,
+                "damping_ratio": steering.damping_ratio,
+                "force_max": steering.force_max,
+                "rate_max": steering.force_rate_max,
+                "stroke": steering.stroke,
+                "stop_stiffness": steering.stop_stiffness,
+            }
+
+
+def _drives(vehicle: Vehicle, wheels: tuple[Axle, ...], speed: float) -> Iterator[Spec]:
+    drive = vehicle.drive
+    if drive is None:
+        return
+    point = operating_point(vehicle, speed)
+    for axle in wheels:
+        for side, _ in SIDES:
+            yield {
+                "name": f"{axle.name}.{side}",
+                "body": axle.name,
+                "rotor": side,
+                "armature_resistance": drive.armature_resistance,
+                "armature_inductance": drive.armature_inductance,
+                "emf_constant": drive.emf_constant,
+                "field_current": point.field_current,
+                "armature_voltage": point.armature_voltage,
+                "armature_voltage_max": drive.armature_voltage_max,
+                "gear_ratio": drive.gear_ratio,
+                "gear_sense": -1.0,  # one stage of spur gears turns the motor against the wheel
+                "rotor_inertia": drive.rotor_inertia,
+                "rotor_damping": drive.rotor_damping,
+                "transmission_stiffness": drive.transmission_stiffness,
+                "transmission_damping": drive.transmission_damping,
+            }
+
+
+def _drag(vehicle: Vehicle) -> Spec | None:
+    if vehicle.running_resistance is None:
+        return None
+    davis = running_resistance(vehicle)
+    return {"body": "body", "coefficients": [davis.constant, davis.linear, davis.quadratic]}
+
+
+def _hold(vehicle: Vehicle) -> Spec:
+    omega = 2.0 * math.pi * HOLD_FREQUENCY
+    mass = vehicle.total_mass
+    return {"body": "body", "proportional": 2.0 * mass * omega, "integral": mass * omega**2}
