@@ -1,0 +1,195 @@
+"""What both active strategies share: sampling and delays, curve sensing, feedforward, and the commands to the plant.
+Wheelsets are named as in the results: bogie1.wheelset1 leads, bogie2.wheelset2 trails."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from klingel.control.diagram import Diagram
+from klingel.control.discrete import low_pass
+from klingel.control.feedforward import GRAVITY, ContactDesign, SteeringGeometry, attack_angle_table
+from klingel.drives import OperatingPoint, operating_point
+from klingel.errors import InputError
+from klingel.track import CANT_BASE
+
+if TYPE_CHECKING:
+    from klingel.track import Track
+    from klingel.vehicle import Drive, SteeringActuator, Vehicle
+
+SPEED = "body.speed"
+SPEED_GRID = tuple(float(v) for v in np.geomspace(5.0, 100.0, 25))
+"""Speeds [m/s] of the gain schedules; below and above, the gain of the last one."""
+
+
+@dataclass(frozen=True)
+class Timing:
+    """sample_time [s]; delays in samples: sensors of the signals fed back, computation of the commands."""
+
+    sample_time: float = 1e-3
+    sensor_samples: int = 1
+    computation_samples: int = 1
+
+
+@dataclass(frozen=True)
+class Wheelset:
+    """Place of a wheelset; `lead` is +1 for the leading one of its bogie, -1 for the trailing one."""
+
+    bogie: int
+    number: int
+
+    @property
+    def lead(self) -> float:
+        return 1.0 if self.number == 1 else -1.0
+
+    @property
+    def bogie_name(self) -> str:
+        return f"bogie{self.bogie}"
+
+    @property
+    def name(self) -> str:
+        return f"bogie{self.bogie}.wheelset{self.number}"
+
+
+WHEELSETS = tuple(Wheelset(bogie, number) for bogie in (1, 2) for number in (1, 2))
+
+
+@dataclass(frozen=True)
+class Plant:
+    """The numbers of one vehicle at its speed that a strategy is made from."""
+
+    geometry: SteeringGeometry
+    drive: Drive
+    steering: SteeringActuator
+    radius: float
+    point: OperatingPoint
+
+    @classmethod
+    def of(cls, vehicle: Vehicle, speed: float) -> Plant:
+        """Errors: InputError for a vehicle without drives or steering actuators, or a speed out of their reach."""
+        for key in ("drive", "steering"):
+            if getattr(vehicle, key) is None:
+                remedy = f"{vehicle.name} is passive; take a vehicle with [drive] and [steering], or no control"
+                raise InputError.single(key, None, "is missing", remedy=remedy)
+        assert vehicle.drive is not None
+        assert vehicle.steering is not None
+        point = operating_point(vehicle, speed)
+        radius = vehicle.geometry.wheel_radius
+        return cls(SteeringGeometry.of(vehicle), vehicle.drive, vehicle.steering, radius, point)
+
+    @property
+    def speed_ratio(self) -> float:
+        """wd over the yaw rate of the track: lambda/r0 [-]; half of Eq. (1) is lambda V rho/r0."""
+        return self.geometry.half_tape_distance / self.radius
+
+    @property
+    def steering_voltage_max(self) -> float:
+        """(1 - x) VaMax [V]: what traction leaves for |u| of Eqs (22) and (23)."""
+        return (1.0 - self.drive.traction_share) * self.drive.armature_voltage_max
+
+    @property
+    def moment_max(self) -> float:
+        """Of both actuators of a wheelset together [N m]."""
+        return 2.0 * self.steering.half_spacing * self.steering.force_max
+
+    @property
+    def actuator_lag(self) -> float:
+        """Delay of the actuators for slow commands, 2 zeta/w [s]."""
+        return 2.0 * self.steering.damping_ratio / (2.0 * math.pi * self.steering.bandwidth)
+
+
+def scheduled(d: Diagram, name: str, gain: Callable[[float], float]) -> str:
+    """The signal of a gain scheduled over the measured speed."""
+    return d.lookup(name, d.measure(SPEED), SPEED_GRID, [gain(v) for v in SPEED_GRID])
+
+
+def speed_difference(d: Diagram, wheelset: Wheelset, timing: Timing) -> str:
+    """wd [rad/s], half of wL - wR as the encoders of the two wheels measure it."""
+    left, right = (d.measure(f"{wheelset.name}.{side}.spin_speed") for side in ("left", "right"))
+    now = d.sum(f"{wheelset.name}.wd.now", {left: 0.5, right: -0.5})
+    return d.delay(f"{wheelset.name}.wd", now, timing.sensor_samples)
+
+
+def profile_of(track: Track, key: str) -> tuple[list[float], list[float]]:
+    """Corner points of the track's curvature or cant: arc lengths [m] and values."""
+    ends = [getattr(segment, key) for segment in track.segments]
+    places = [*track.starts, track.length]
+    return [float(s) for s in places], [float(ends[0][0]), *(float(end[1]) for end in ends)]
+
+
+def database_curvature(d: Diagram, name: str, track: Track, position: str) -> str:
+    """Curvature [1/m] at a position along the track, from the track database."""
+    return d.lookup(name, position, *profile_of(track, "curvature"))
+
+
+def database_curve(d: Diagram, w: Wheelset, track: Track, *, ahead: float, preview: float) -> tuple[str, str]:
+    """Curvature [1/m] and lateral acceleration [m/s2] `ahead` metres and `preview` seconds before a wheelset.
+
+    The acceleration is the unbalanced one of the track plane, V^2 rho - g D/e.
+    """
+    speed = d.measure(SPEED)
+    terms: dict[str, float | str] = {d.measure(f"{w.name}.s"): 1.0, speed: preview}
+    position = d.sum(f"{w.name}.ahead", terms, bias=ahead)
+    rho = database_curvature(d, f"{w.name}.rho", track, position)
+    cant = d.lookup(f"{w.name}.cant", position, *profile_of(track, "cant"))
+    square = d.product(f"{w.name}.v2rho", speed, speed, rho)
+    return rho, d.sum(f"{w.name}.ay", {square: 1.0, cant: -GRAVITY / CANT_BASE})
+
+
+def sensed_curve(d: Diagram, w: Wheelset, timing: Timing, *, frequency: float) -> tuple[str, str]:
+    """Curvature [1/m] and lateral acceleration [m/s2] of a bogie from its own gyro and accelerometer.
+
+    Both pass the same low-pass [Hz], above which hunting and track irregularity would steer.
+    """
+    section = [low_pass(frequency, sample_time=timing.sample_time)]
+    bogie = w.bogie_name
+    if w.number == 1:
+        yaw = d.delay(f"{bogie}.gyro", d.measure(f"{bogie}.yaw_rate"), timing.sensor_samples)
+        slow = d.filter(f"{bogie}.yaw_rate.slow", yaw, section)
+        d.quotient(f"{bogie}.rho", slow, d.measure(SPEED), floor=SPEED_GRID[0])
+        side = d.delay(f"{bogie}.accelerometer", d.measure(f"{bogie}.lateral_acceleration"), timing.sensor_samples)
+        d.filter(f"{bogie}.ay", side, section)
+    return f"{bogie}.rho", f"{bogie}.ay"
+
+
+def steering_feedforward(d: Diagram, plant: Plant, contact: ContactDesign, w: Wheelset, rho: str, ay: str) -> str:
+    """M = kpsi [+-a rho + alpha_Y - psi_b] [N m] of a wheelset, from curvature and lateral acceleration."""
+    g = plant.geometry
+    share = g.lateral_share(w.bogie, w.number)
+    force = d.sum(f"{w.name}.Y", {ay: g.mass / 4.0, rho: share})
+    alpha = d.lookup(f"{w.name}.alpha", force, *attack_angle_table(g, contact))
+    radial = w.lead * g.half_wheelbase - g.bogie_yaw(w.bogie)
+    return d.sum(f"{w.name}.M.feedforward", {rho: g.yaw_stiffness * radial, alpha: g.yaw_stiffness})
+
+
+def command_steering(d: Diagram, plant: Plant, w: Wheelset, moment: str, timing: Timing) -> None:
+    """Both actuators of a wheelset make a moment [N m]: F_left = -F_right = M/(2 b)."""
+    limited = d.saturation(f"{w.name}.M.limited", moment, -plant.moment_max, plant.moment_max)
+    sent = d.delay(f"{w.name}.M.sent", limited, timing.computation_samples)
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        force = d.sum(f"{w.name}.F.{side}", {sent: sign / (2.0 * plant.steering.half_spacing)})
+        d.command(f"{w.name}.actuator_{side}.force", force)
+    d.probe(f"{w.name}.steering_moment_command", "N m", sent)
+
+
+def command_motors(d: Diagram, plant: Plant, w: Wheelset, voltage: str, timing: Timing) -> None:
+    """VaL = x VaMax + u and VaR = x VaMax - u, Eqs (22) and (23), with |u| at most (1 - x) VaMax."""
+    limit = plant.steering_voltage_max
+    limited = d.saturation(f"{w.name}.u.limited", voltage, -limit, limit)
+    sent = d.delay(f"{w.name}.u.sent", limited, timing.computation_samples)
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        total = d.sum(f"{w.name}.Va.{side}", {sent: sign}, bias=plant.point.armature_voltage)
+        d.command(f"{w.name}.{side}.armature_voltage", total)
+    d.probe(f"{w.name}.steering_voltage", "V", sent)
+
+
+def check_positive(owner: object, names: Sequence[str]) -> None:
+    """Errors: InputError naming every parameter of a strategy that is not above zero."""
+    for name in names:
+        value = getattr(owner, name)
+        if not value > 0.0:
+            raise InputError.single(f"control.{name}", value, "must be positive", remedy="give a value above zero")

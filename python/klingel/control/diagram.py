@@ -1,0 +1,101 @@
+"""Builder of the core's sampled block diagrams: each method adds one block and returns the name of its signal.
+Only names and numbers here; the laws of the blocks, and every check, are the core's."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from klingel.control.discrete import Section
+
+Gain = float | str
+"""A number, or the name of the signal that carries it."""
+
+
+class Diagram:
+    """A block diagram under construction, blocks in execution order.
+
+    >>> d = Diagram(sample_time=1e-3)
+    >>> speed = d.measure("body.speed")
+    >>> error = d.sum("error", {speed: -1.0}, bias=30.0)
+    >>> d.command("hold.force", d.saturation("force", error, -10.0, 10.0))
+    >>> [block["kind"] for block in d.spec()["blocks"]]
+    ['sum', 'saturation']
+    """
+
+    def __init__(self, *, sample_time: float) -> None:
+        self.sample_time = sample_time
+        self._measurements: list[str] = []
+        self._blocks: list[dict[str, Any]] = []
+        self._commands: list[dict[str, str]] = []
+        self._probes: list[dict[str, str]] = []
+
+    def measure(self, channel: str) -> str:
+        """The signal of a channel of the plant (SI units)."""
+        if channel not in self._measurements:
+            self._measurements.append(channel)
+        return channel
+
+    def sum(self, name: str, terms: Mapping[str, Gain], *, bias: float = 0.0) -> str:
+        """bias + sum of gain times signal."""
+        rows = [{"signal": signal, "gain": gain} for signal, gain in terms.items()]
+        return self._add("sum", name, terms=rows, bias=bias)
+
+    def product(self, name: str, *factors: str) -> str:
+        """The product of signals."""
+        return self._add("product", name, factors=list(factors))
+
+    def quotient(self, name: str, numerator: str, denominator: str, *, floor: float) -> str:
+        """numerator / denominator, the denominator's magnitude not below `floor`."""
+        return self._add("quotient", name, numerator=numerator, denominator=denominator, floor=floor)
+
+    def filter(self, name: str, signal: str, sections: Sequence[Section]) -> str:
+        """A chain of discrete second-order sections."""
+        rows = [{"b": list(section.b), "a": list(section.a)} for section in sections]
+        return self._add("filter", name, input=signal, sections=rows)
+
+    def pi(self, name: str, error: str, *, proportional: Gain, integral: Gain, limit: Gain | None = None) -> str:
+        """PI controller; its output stays within +-limit and its integral does not wind up there."""
+        lower: Gain | None = None
+        if isinstance(limit, str):
+            lower = self.sum(f"{name}.lower", {limit: -1.0})
+        elif limit is not None:
+            lower = -limit
+        return self._add(
+            "pi", name, input=error, proportional=proportional, integral=integral, lower=lower, upper=upper
+        )
+
+    def saturation(self, name: str, signal: str, lower: Gain, upper: Gain) -> str:
+        """The signal held between two limits."""
+        return self._add("saturation", name, input=signal, lower=lower, upper=upper)
+
+    def delay(self, name: str, signal: str, samples: int) -> str:
+        """The signal some samples ago; the signal itself for none."""
+        return self._add("delay", name, input=signal, samples=samples) if samples else signal
+
+    def lookup(self, name: str, signal: str, x: Sequence[float], y: Sequence[float], *, edge: str = "hold") -> str:
+        """Linear interpolation of y(x); outside, the end value (`hold`) or an outcome of the run (`error`)."""
+        points = {"x": [float(v) for v in x], "y": [float(v) for v in y]}
+        return self._add("lookup", name, input=signal, **points, interpolation="linear", edge=edge)
+
+    def command(self, target: str, signal: str) -> None:
+        """Drives an input of the plant with a signal."""
+        self._commands.append({"target": target, "signal": signal})
+
+    def probe(self, channel: str, unit: str, signal: str) -> None:
+        """Records a signal with the results."""
+        self._probes.append({"channel": channel, "unit": unit, "signal": signal})
+
+    def spec(self) -> dict[str, Any]:
+        """The core's control spec."""
+        return {
+            "sample_time": self.sample_time,
+            "measurements": list(self._measurements),
+            "blocks": list(self._blocks),
+            "commands": list(self._commands),
+            "probes": list(self._probes),
+        }
+
+    def _add(self, kind: str, name: str, **values: Any) -> str:
+        self._blocks.append({"kind": kind, "name": name, **values})
+        return name

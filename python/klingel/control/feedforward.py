@@ -1,0 +1,120 @@
+"""What the steering must hold in a curve: the moment that keeps a wheelset radial plus its attack angle.
+M = kpsi [+-a rho + alpha_Y - psi_b]: + leading, - trailing in its bogie; symbols at each function."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import brentq
+
+if TYPE_CHECKING:
+    from klingel.vehicle import Vehicle
+
+GRAVITY = 9.81
+"""[m/s2]"""
+
+
+@dataclass(frozen=True)
+class ContactDesign:
+    """Wheel-rail contact as the controllers assume it; the vehicle itself runs on the real contact.
+
+    longitudinal_creep, lateral_creep: f11, f22 of one wheel at `load` [N]: Kalker's coefficients on the Hertz ellipse
+    of S1002 on 60E1 at 1:40; they scale with load^(2/3). conicity: gamma, effective slope at 1 to 2 mm. friction: 0.30,
+    below the study's 0.35, so that a rail a little more slippery than usual is still steered well.
+    """
+
+    longitudinal_creep: float = 10.0e6
+    lateral_creep: float = 8.8e6
+    load: float = 54.5e3
+    conicity: float = 0.2
+    friction: float = 0.30
+
+
+@dataclass(frozen=True)
+class SteeringGeometry:
+    """What the feedforward needs of a vehicle, all SI.
+
+    yaw_stiffness: kpsi of one wheelset's primary suspension [N m/rad]; lateral_stiffness: of one wheelset [N/m];
+    secondary_yaw: kpsi of one bogie's secondary suspension [N m/rad]; centre_height: of the whole vehicle [m].
+    """
+
+    half_wheelbase: float
+    half_bogie_spacing: float
+    half_tape_distance: float
+    mass: float
+    centre_height: float
+    yaw_stiffness: float
+    lateral_stiffness: float
+    secondary_yaw: float
+
+    @classmethod
+    def of(cls, vehicle: Vehicle) -> SteeringGeometry:
+        """The numbers of a vehicle."""
+        g, p, s = vehicle.geometry, vehicle.primary, vehicle.secondary
+        moment = vehicle.body.mass * vehicle.body.height + 2.0 * vehicle.bogie.mass * vehicle.bogie.height
+        moment += 4.0 * vehicle.wheelset_mass * g.wheel_radius
+        return cls(
+            half_wheelbase=g.half_wheelbase,
+            half_bogie_spacing=g.half_bogie_spacing,
+            half_tape_distance=vehicle.wheel_profile.half_tape_distance,
+            mass=vehicle.total_mass,
+            centre_height=moment / vehicle.total_mass,
+            yaw_stiffness=2.0 * p.stiffness.x * p.half_spacing**2,
+            lateral_stiffness=2.0 * p.stiffness.y,
+            secondary_yaw=2.0 * s.stiffness.x * s.half_spacing**2,
+        )
+
+    def lateral_share(self, bogie: int, wheelset: int) -> float:
+        """d(Y)/d(rho) [N m] of a wheelset by the yaw of its bogie against the body: +-kpsi_secondary L / (2 a).
+
+        The secondary suspension turns the bogie back towards the body; the two wheelsets hold that moment by a pair of
+        lateral forces: + for wheelset 1 of bogie 1 and wheelset 2 of bogie 2, - for the two inner ones.
+        """
+        sign = 1.0 if bogie == wheelset else -1.0
+        return sign * self.secondary_yaw * self.half_bogie_spacing / (2.0 * self.half_wheelbase)
+
+    def bogie_yaw(self, bogie: int) -> float:
+        """d(psi_b)/d(rho) [m]: the bogie frame's yaw that the same pair of forces makes on the primary springs."""
+        pair = self.lateral_share(bogie, 1) - self.lateral_share(bogie, 2)
+        return -pair / self.lateral_stiffness / (2.0 * self.half_wheelbase)
+
+
+def creep_force(creepage: float, stiffness: float, limit: float) -> float:
+    """Creep force [N] of one wheel: linear at first, saturated at `limit`; Johnson and Vermeulen's cubic."""
+    share = min(abs(stiffness * creepage) / (3.0 * limit), 1.0)
+    return float(np.copysign(limit * (1.0 - (1.0 - share) ** 3), creepage))
+
+
+def attack_angle(force: float, geometry: SteeringGeometry, contact: ContactDesign) -> float:
+    """alpha_Y [rad]: the yaw against the track at which both wheels together give the lateral force Y [N].
+
+    The wheel loads are those of the cant deficiency that Y stands for: m/4 a_nc = Y, with the moment of a_nc about the
+    rails at the height of the vehicle's centre of mass. Linear for small forces: Y/(2 f22).
+
+    >>> geometry = SteeringGeometry(1.28, 9.5, 0.75, 45630.0, 1.42, 3.0e6, 7.77e6, 3.2e5)
+    >>> round(1e3 * attack_angle(1e3, geometry, ContactDesign()), 3)
+    0.056
+    """
+    if force == 0.0:
+        return 0.0
+    static = geometry.mass * GRAVITY / 8.0
+    transfer = abs(force) * geometry.centre_height / (2.0 * geometry.half_tape_distance)
+    loads = (static + transfer, max(static - transfer, 0.05 * static))
+    wheels = [(contact.lateral_creep * (n / contact.load) ** (2.0 / 3.0), contact.friction * n) for n in loads]
+
+    def missing(angle: float) -> float:
+        return sum(creep_force(angle, f22, limit) for f22, limit in wheels) - abs(force)
+
+    saturated = max(3.0 * limit / f22 for f22, limit in wheels)
+    if missing(saturated) <= 0.0:
+        return float(np.copysign(saturated, force))
+    return float(np.copysign(brentq(missing, 0.0, saturated, xtol=1e-9), force))
+
+
+def attack_angle_table(geometry: SteeringGeometry, contact: ContactDesign) -> tuple[list[float], list[float]]:
+    """Lateral force [N] and attack angle [rad] for a lookup; its ends are 0.9 of what the friction can hold."""
+    limit = 0.9 * contact.friction * geometry.mass * GRAVITY / 4.0
+    forces = np.linspace(-limit, limit, 41)
+    return [float(f) for f in forces], [attack_angle(float(f), geometry, contact) for f in forces]

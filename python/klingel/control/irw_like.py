@@ -1,0 +1,131 @@
+"""Strategy I, "IRW-like": the motors give both wheels equal torque, the actuators steer on the speed difference.
+Differential torque control and rotational speed control of Perez et al. (2004), with a feedforward of the moment."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+from klingel.control.common import (
+    SPEED,
+    WHEELSETS,
+    Plant,
+    Timing,
+    Wheelset,
+    check_positive,
+    command_motors,
+    command_steering,
+    database_curvature,
+    database_curve,
+    scheduled,
+    sensed_curve,
+    speed_difference,
+    steering_feedforward,
+)
+from klingel.control.diagram import Diagram
+from klingel.control.feedforward import ContactDesign
+from klingel.errors import InputError, nearest
+
+if TYPE_CHECKING:
+    from klingel.track import Track
+    from klingel.vehicle import Vehicle
+
+Curvature = Literal["gyro", "database"]
+
+FREQUENCY = {"gyro": 1.6, "database": 1.2}
+"""Crossover of the steering loop [Hz]: with the gyro the yaw rate of the wheelset itself is subtracted, which leaves
+V gamma y/r0^2 alone and bears a faster loop."""
+
+
+@dataclass(frozen=True)
+class IRWLike:
+    """Differential torque control plus steering on the wheel speed difference; parameters with their reasons.
+
+    curvature: where the curve is known from: "gyro" (yaw gyros of wheelset and bogie, accelerometer of the bogie) or
+        "database" (position along a known track).
+    frequency: crossover fI of the steering loop [Hz]; None takes `FREQUENCY`.
+    integral_time: Ti of the steering loop [s], five times the loop's own time so that it costs little phase.
+    current_frequency: crossover of the differential current loop [Hz]: above all motion of the wheelset, below what a
+        delay of two samples bears.
+    sensor_frequency: low-pass of the sensed curve [Hz]; it delays the feedforward, so not lower than needed to keep
+        the yaw of the bogie from steering itself.
+    timing: sampling and delays. contact: what the design assumes of wheel and rail.
+
+    >>> from klingel import library
+    >>> from klingel.track import Track
+    >>> spec = IRWLike().lower(library.vehicle("mechatronic_irw"), Track.straight("500 m"), 30.0)
+    >>> len(spec["commands"])
+    16
+    """
+
+    curvature: Curvature = "gyro"
+    frequency: float | None = None
+    integral_time: float = 0.8
+    current_frequency: float = 30.0
+    sensor_frequency: float = 1.5
+    timing: Timing = field(default_factory=Timing)
+    contact: ContactDesign = field(default_factory=ContactDesign)
+
+    def __post_init__(self) -> None:
+        if self.curvature not in get_args(Curvature):
+            remedy = nearest(self.curvature, get_args(Curvature))
+            raise InputError.single("control.curvature", self.curvature, "is not known", remedy=remedy)
+        if self.frequency is not None:
+            check_positive(self, ("frequency",))
+        check_positive(self, ("integral_time", "current_frequency", "sensor_frequency"))
+
+    def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any]:
+        """The block diagram for a vehicle at a speed [m/s]; the track is used by the database variant only.
+
+        Errors: InputError for a vehicle without drives or steering actuators.
+        """
+        plant = Plant.of(vehicle, speed)
+        d = Diagram(sample_time=self.timing.sample_time)
+        proportional = scheduled(d, "steering.gain", lambda v: self._steering_gain(plant, v))
+        integral = d.sum("steering.integral_gain", {proportional: 1.0 / self.integral_time})
+        for wheelset in WHEELSETS:
+            self._torque_loop(d, plant, wheelset)
+            self._steering_loop(d, plant, wheelset, track, proportional, integral)
+        return d.spec()
+
+    def _steering_gain(self, plant: Plant, speed: float) -> float:
+        """K = 2 pi fI kpsi r0^2/(V^2 gamma) [N m s/rad]: y' = V psi, psi = M/kpsi and wd = V gamma y/r0^2."""
+        frequency = FREQUENCY[self.curvature] if self.frequency is None else self.frequency
+        stiffness = plant.geometry.yaw_stiffness * plant.radius**2 / self.contact.conicity
+        return 2.0 * math.pi * frequency * stiffness / speed**2
+
+    def _torque_loop(self, d: Diagram, plant: Plant, w: Wheelset) -> None:
+        """u = K(s) (0 - (IaL - IaR)/2): equal armature currents are equal torques; K cancels the armature's pole."""
+        left, right = (d.measure(f"{w.name}.{side}.armature_current") for side in ("left", "right"))
+        now = d.sum(f"{w.name}.Id.now", {left: -0.5, right: 0.5})
+        error = d.delay(f"{w.name}.Id.error", now, self.timing.sensor_samples)
+        crossover = 2.0 * math.pi * self.current_frequency
+        voltage = d.pi(
+            f"{w.name}.u",
+            error,
+            proportional=crossover * plant.drive.armature_inductance,
+            integral=crossover * plant.drive.armature_resistance,
+            limit=plant.steering_voltage_max,
+        )
+        command_motors(d, plant, w, voltage, self.timing)
+
+    def _steering_loop(
+        self, d: Diagram, plant: Plant, w: Wheelset, track: Track, proportional: str, integral: str
+    ) -> None:
+        """M = feedforward - K (1 + 1/(Ti s)) (wd - lambda r/r0), r the yaw rate of the wheelset or of the track."""
+        wd = speed_difference(d, w, self.timing)
+        if self.curvature == "gyro":
+            rate = d.delay(f"{w.name}.gyro", d.measure(f"{w.name}.yaw_rate"), self.timing.sensor_samples)
+            rho, ay = sensed_curve(d, w, self.timing, frequency=self.sensor_frequency)
+        else:
+            here = database_curvature(d, f"{w.name}.rho.here", track, d.measure(f"{w.name}.s"))
+            rate = d.product(f"{w.name}.turn", here, d.measure(SPEED))
+            preview = plant.actuator_lag + self.timing.computation_samples * self.timing.sample_time
+            ahead = -0.5 * w.lead * plant.geometry.half_wheelbase
+            rho, ay = database_curve(d, w, track, ahead=ahead, preview=preview)
+        error = d.sum(f"{w.name}.wd.error", {rate: plant.speed_ratio, wd: -1.0})
+        limit = 0.5 * plant.moment_max
+        feedback = d.pi(f"{w.name}.M.feedback", error, proportional=proportional, integral=integral, limit=limit)
+        feedforward = steering_feedforward(d, plant, self.contact, w, rho, ay)
+        command_steering(d, plant, w, d.sum(f"{w.name}.M", {feedforward: 1.0, feedback: 1.0}), self.timing)

@@ -1,0 +1,118 @@
+"""Strategy S, "solid-wheelset-like": the motors couple the two wheels, the actuators take the yaw moment away.
+Differential speed control and yaw-moment control of Perez et al. (2004), with a feedforward of the steering moment."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from klingel.control.common import (
+    SPEED,
+    WHEELSETS,
+    Plant,
+    Timing,
+    Wheelset,
+    check_positive,
+    command_motors,
+    command_steering,
+    database_curvature,
+    database_curve,
+    scheduled,
+    speed_difference,
+    steering_feedforward,
+)
+from klingel.control.diagram import Diagram
+from klingel.control.discrete import lead, notch
+from klingel.control.feedforward import ContactDesign
+
+if TYPE_CHECKING:
+    from klingel.track import Track
+    from klingel.vehicle import Vehicle
+
+
+@dataclass(frozen=True)
+class SolidLike:
+    """Differential speed control plus yaw-moment control; parameters with their reasons.
+
+    coupling: damping between the wheels over f11 r0^2/V. 0.35 couples them enough to centre the wheelset and leaves
+        hunting damped up to 265 km/h with the soft primary suspension; 0.8 leaves 1 to 2 % damping there.
+    integral_time: of the speed loop [s]. Slow, because integral coupling of two wheels acts as a spring at the hunting
+        frequency; it only removes what friction and unequal radii leave.
+    lead_pole: time constant [s] that replaces the armature's La/Ra in the speed loop.
+    notch_frequency, notch_depth, notch_width: of the transmission's torsion mode with the wheel held by creep [Hz].
+    yaw_frequency: crossover of the yaw-moment loop [Hz], below the hunting band of 2 to 8 Hz.
+    timing: sampling and delays. contact: what the design assumes of wheel and rail.
+
+    >>> from klingel import library
+    >>> from klingel.track import Track
+    >>> spec = SolidLike().lower(library.vehicle("mechatronic_irw"), Track.straight("500 m"), 30.0)
+    >>> len(spec["commands"])
+    16
+    """
+
+    coupling: float = 0.35
+    integral_time: float = 5.0
+    lead_pole: float = 0.002
+    notch_frequency: float = 55.0
+    notch_depth: float = 0.1
+    notch_width: float = 0.5
+    yaw_frequency: float = 0.7
+    timing: Timing = field(default_factory=Timing)
+    contact: ContactDesign = field(default_factory=ContactDesign)
+
+    def __post_init__(self) -> None:
+        names = ("coupling", "integral_time", "lead_pole", "notch_frequency", "notch_depth", "notch_width")
+        check_positive(self, (*names, "yaw_frequency"))
+
+    def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any]:
+        """The block diagram for a vehicle at a speed [m/s] on a track whose curvature the database knows.
+
+        Errors: InputError for a vehicle without drives or steering actuators.
+        """
+        plant = Plant.of(vehicle, speed)
+        d = Diagram(sample_time=self.timing.sample_time)
+        proportional = scheduled(d, "speed_loop.gain", lambda v: self._voltage_gain(plant, v))
+        integral = d.sum("speed_loop.integral_gain", {proportional: 1.0 / self.integral_time})
+        for wheelset in WHEELSETS:
+            self._speed_loop(d, plant, wheelset, track, proportional, integral)
+            self._yaw_moment_loop(d, plant, wheelset, track)
+        return d.spec()
+
+    def _voltage_gain(self, plant: Plant, speed: float) -> float:
+        """Volts per rad/s that make the wanted damping torque through KT/(N Ra)."""
+        damping = self.coupling * self.contact.longitudinal_creep * plant.radius**2 / speed
+        return damping * plant.drive.gear_ratio * plant.drive.armature_resistance / plant.point.torque_constant
+
+    def _speed_loop(
+        self, d: Diagram, plant: Plant, w: Wheelset, track: Track, proportional: str, integral: str
+    ) -> None:
+        """u = K(s) (lambda V rho/r0 - wd), with the back-EMF of the commanded difference added."""
+        ts = self.timing.sample_time
+        rho = database_curvature(d, f"{w.name}.rho.here", track, d.measure(f"{w.name}.s"))
+        turn = d.product(f"{w.name}.turn", rho, d.measure(SPEED))
+        error = d.sum(f"{w.name}.wd.error", {turn: plant.speed_ratio, speed_difference(d, w, self.timing): -1.0})
+        armature = plant.drive.armature_inductance / plant.drive.armature_resistance
+        shape = [
+            lead(armature, self.lead_pole, sample_time=ts),
+            notch(self.notch_frequency, depth=self.notch_depth, width=self.notch_width, sample_time=ts),
+        ]
+        shaped = d.filter(f"{w.name}.wd.shaped", error, shape)
+        limit = plant.steering_voltage_max
+        feedback = d.pi(f"{w.name}.u.feedback", shaped, proportional=proportional, integral=integral, limit=limit)
+        back_emf = plant.point.torque_constant / plant.drive.gear_ratio * plant.speed_ratio
+        command_motors(d, plant, w, d.sum(f"{w.name}.u", {feedback: 1.0, turn: back_emf}), self.timing)
+
+    def _yaw_moment_loop(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
+        """Integral control of the total yaw moment on the wheelset to zero, around the feedforward."""
+        preview = plant.actuator_lag + self.timing.computation_samples * self.timing.sample_time
+        ahead = -0.5 * w.lead * plant.geometry.half_wheelbase
+        rho, ay = database_curve(d, w, track, ahead=ahead, preview=preview)
+        feedforward = steering_feedforward(d, plant, self.contact, w, rho, ay)
+        total = d.delay(f"{w.name}.M.total", d.measure(f"{w.name}.yaw_moment"), self.timing.sensor_samples)
+        error = d.sum(f"{w.name}.M.error", {total: -1.0})
+        crossover = 2.0 * math.pi * self.yaw_frequency
+        feedback = d.pi(
+            f"{w.name}.M.feedback", error, proportional=0.0, integral=crossover, limit=0.5 * plant.moment_max
+        )
+        command_steering(d, plant, w, d.sum(f"{w.name}.M", {feedforward: 1.0, feedback: 1.0}), self.timing)
