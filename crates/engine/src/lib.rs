@@ -1,1 +1,25 @@
-//! Engine.
+//! From a spec to motion: `spec` -> `compile` -> `Model` -> `rates` (the page to read first) -> `simulate`.
+//! Multibody words only: bodies, rotors, joints, elements, wheels, drives, blocks.
+
+pub mod channels;
+pub mod compile;
+pub mod control;
+pub mod equilibrium;
+pub mod error;
+pub mod integrate;
+pub mod model;
+pub mod motion;
+pub mod newton_euler;
+pub mod rates;
+pub mod simulate;
+pub mod spec;
+pub mod suspension;
+pub mod traction;
+pub mod wheel_rail;
+
+pub use compile::compile;
+pub use error::{EngineError, Fault};
+pub use model::Model;
+pub use rates::rates;
+pub use simulate::{Progress, TimeSeries, simulate};
+pub use spec::Spec;

@@ -59,8 +59,10 @@ pub struct OutsideTable {
 #[derive(Clone, Debug)]
 pub struct ContactTable {
     plane: [Axis; 2],
-    /// Height w at which each zone touches, m.
-    gap: Vec<[f64; 3]>,
+    /// Of each zone at first touch: height w (m), then the squared tangent of the contact plane's angle in the track.
+    touch: Vec<[f64; 6]>,
+    /// Nominal radius of the wheel, m.
+    radius: f64,
     space: [[Axis; 3]; 3],
     /// Per zone: force / d^1.5, angle, y, radius, a / sqrt d, b / sqrt d over (shift, roll, sqrt(d / d_max)).
     load: [Vec<[f64; 6]>; 3],
@@ -122,13 +124,14 @@ impl ContactTable {
         let axes = [Axis::new(SHIFT[0], SHIFT[1], SHIFT_INTERVALS), Axis::new(ROLL[0], ROLL[1], ROLL_INTERVALS)];
         let depth = Axis::new(0.0, 1.0, DEPTH_INTERVALS);
         let nodes = axes[0].len() * axes[1].len();
-        let columns: Vec<[(f64, Vec<[f64; 6]>); 3]> = (0..nodes)
+        let columns: Vec<[(f64, f64, Vec<[f64; 6]>); 3]> = (0..nodes)
             .into_par_iter()
             .map_init(Vec::new, |gaps, i| {
                 let (shift, roll) = (axes[0].node(i / axes[1].len()), axes[1].node(i % axes[1].len()));
                 [0, 1, 2].map(|z| {
                     PairGeometry::gaps(&rail, &zones.strips[z], shift, roll, gaps);
-                    column(&zones.strips[z], gaps, pair.radius, material, (DEPTH[z], depth))
+                    let (gap, angle, rows) = column(&zones.strips[z], gaps, pair.radius, material, (DEPTH[z], depth));
+                    (gap, (angle - roll).tan().powi(2), rows)
                 })
             })
             .collect();
@@ -137,9 +140,10 @@ impl ContactTable {
         }
         Ok(Self {
             plane: axes,
-            gap: columns.iter().map(|c| [c[0].0, c[1].0, c[2].0]).collect(),
+            touch: columns.iter().map(|c| [c[0].0, c[1].0, c[2].0, c[0].1, c[1].1, c[2].1]).collect(),
+            radius: pair.radius,
             space: [[axes[0], axes[1], depth]; 3],
-            load: [0, 1, 2].map(|z| columns.iter().flat_map(|c| c[z].1.iter().copied()).collect()),
+            load: [0, 1, 2].map(|z| columns.iter().flat_map(|c| c[z].2.iter().copied()).collect()),
             borders: zones.borders,
         })
     }
@@ -150,18 +154,22 @@ impl ContactTable {
     /// which a point of z = 0 would touch the top of rail (m, positive pressed in); `roll` of the axle to the track (rad).
     /// For the point (Y, Z) of the axle line in the plane of the tape circle, in track axes with the tape circles at
     /// +-`tape_circle`: shift = Y - tape_circle - r0 sin(roll), w = Z + r0 cos(roll). For the left wheel give
-    /// -Y and -roll, and mirror what comes out.
+    /// -Y, -roll and -yaw, and mirror what comes out.
+    ///
+    /// `yaw` of the axle (rad, positive nose outwards on the right wheel): the wheel x'^2/(2 r) below its lowest line and
+    /// turned by psi touches where x' = r tan(delta) psi, and there it is r tan^2(delta) psi^2 / 2 nearer to the rail.
     ///
     /// # Errors
     /// A place outside the table; nothing is extrapolated.
     #[inline]
-    pub fn patches<S: Scalar>(&self, shift: S, w: S, roll: S) -> Result<[Patch<S>; 3], OutsideTable> {
+    pub fn patches<S: Scalar>(&self, shift: S, w: S, roll: S, yaw: S) -> Result<[Patch<S>; 3], OutsideTable> {
         within("shift", shift, SHIFT)?;
         within("roll", roll, ROLL)?;
-        let gaps = S::lift_n([shift, roll], |x| plane(&self.gap, &self.plane, x));
+        let touch = S::lift_n([shift, roll], |x| plane(&self.touch, &self.plane, x));
+        let nearer = yaw.square() * (0.5 * self.radius);
         let mut patches = [Patch::default(); 3];
         for zone in 0..3 {
-            let d = w - gaps[zone];
+            let d = w - touch[zone] + nearer * touch[zone + 3];
             patches[zone].penetration = d;
             if d.le(S::zero()).all() {
                 continue;
@@ -199,16 +207,16 @@ fn within<S: Scalar>(what: &'static str, x: S, [least, most]: [f64; 2]) -> Resul
     Err(OutsideTable { what, value: x.value(), least, most })
 }
 
-/// Gap and loads over the depth axis for one zone at one (shift, roll).
+/// Gap, angle on the wheel at first touch, and loads over the depth axis for one zone at one (shift, roll).
 fn column(
     strips: &Strips,
     gaps: &[f64],
     radius: f64,
     material: &Material,
     (deepest, axis): (f64, Axis),
-) -> (f64, Vec<[f64; 6]>) {
+) -> (f64, f64, Vec<[f64; 6]>) {
     let Some(touch) = first_touch(strips, gaps, radius).filter(|t| t.gap < FAR) else {
-        return (FAR, vec![[0.0; 6]; axis.len()]);
+        return (FAR, 0.0, vec![[0.0; 6]; axis.len()]);
     };
     let mut epsilon = 0.5;
     let mut penetration = Vec::with_capacity(gaps.len());
@@ -229,5 +237,5 @@ fn column(
     for i in [1, 0] {
         rows[i] = core::array::from_fn(|k| 2.0 * rows[i + 1][k] - rows[i + 2][k]);
     }
-    (touch.gap, rows)
+    (touch.gap, touch.angle, rows)
 }

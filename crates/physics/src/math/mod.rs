@@ -93,14 +93,8 @@ impl<S: Scalar> SubAssign for Vec3<S> {
 }
 
 /// A rotation: `r.apply(v)` resolves in the outer frame what was resolved in the inner one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Rotation<S>(pub [[S; 3]; 3]);
-
-impl<S: Scalar> Default for Rotation<S> {
-    fn default() -> Self {
-        Self::yaw_roll_pitch(S::zero(), S::zero(), S::zero())
-    }
-}
 
 impl<S: Scalar> Rotation<S> {
     /// Rz(yaw) Rx(roll) Ry(pitch): pitch last, so that a spinning wheelset may leave it out.

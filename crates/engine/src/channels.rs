@@ -1,0 +1,122 @@
+//! What a run records: dotted channels with units, read from the states and from the workspace of `rates`.
+//! Forces Q and Y act on the rail (down, right), X on the wheel (forward); all in the local track frame.
+#![allow(non_snake_case)] // monogram notation
+
+use crate::model::{Body, Model};
+use crate::motion::{self, Motion};
+use crate::rates::{Loads, Workspace};
+use crate::wheel_rail::WheelState;
+use klingel_physics::math::Vec3;
+
+/// Name and unit of one channel.
+pub type Channel = (String, &'static str);
+
+const BODY: [(&str, &str); 13] = [
+    ("s", "m"),
+    ("y", "m"),
+    ("z", "m"),
+    ("roll", "rad"),
+    ("pitch", "rad"),
+    ("yaw", "rad"),
+    ("speed", "m/s"),
+    ("lateral_acceleration", "m/s2"),
+    ("vertical_acceleration", "m/s2"),
+    ("yaw_rate", "rad/s"),
+    ("curvature", "1/m"),
+    ("cant", "m"),
+    ("yaw_moment", "N m"),
+];
+
+const WHEEL: [(&str, &str); 11] = [
+    ("Q", "N"),
+    ("Y", "N"),
+    ("X", "N"),
+    ("tgamma", "N"),
+    ("spin_work", "N"),
+    ("contact_angle", "rad"),
+    ("steep_force", "N"),
+    ("tread_force", "N"),
+    ("root_force", "N"),
+    ("flange_force", "N"),
+    ("spin_speed", "rad/s"),
+];
+
+const DRIVE: [(&str, &str); 4] =
+    [("armature_current", "A"), ("armature_voltage", "V"), ("motor_speed", "rad/s"), ("shaft_torque", "N m")];
+
+const ACTUATOR: [(&str, &str); 3] = [("force", "N"), ("command", "N"), ("stroke", "m")];
+
+/// Every channel of the model, in the order that `fill` writes.
+pub fn list(m: &Model) -> Vec<Channel> {
+    let of = |name: &str, parts: &[(&str, &'static str)]| -> Vec<Channel> {
+        parts.iter().map(|(part, unit)| (format!("{name}.{part}"), *unit)).collect()
+    };
+    let mut channels = Vec::new();
+    channels.extend(m.bodies.iter().flat_map(|b| of(&b.name, &BODY)));
+    channels.extend(m.wheels.iter().flat_map(|w| of(&w.name, &WHEEL)));
+    channels.extend(m.drives.iter().flat_map(|d| of(&d.name, &DRIVE)));
+    channels.extend(m.actuators.iter().flat_map(|a| of(&a.name, &ACTUATOR)));
+    if m.hold.is_some() {
+        channels.push(("hold.force".into(), "N"));
+    }
+    channels
+}
+
+/// Writes the channels at one time; `w` must come from `rates` at the same `x` and `inputs`.
+pub fn fill(m: &Model, x: &[f64], inputs: &[f64], w: &Workspace<f64>, row: &mut [f64]) {
+    let mut at = 0;
+    let mut put = |values: &[f64]| {
+        row[at..at + values.len()].copy_from_slice(values);
+        at += values.len();
+    };
+    for (i, body) in m.bodies.iter().enumerate() {
+        put(&body_row(m, body, &w.motions[i], &w.loads[i], w.felt_T[i], x));
+    }
+    for (wheel, state) in m.wheels.iter().zip(&w.wheels) {
+        put(&wheel_row(state, x[m.rotors[wheel.rotor].state]));
+    }
+    for (drive, state) in m.drives.iter().zip(&w.drives) {
+        put(&[x[drive.state], inputs[drive.input], x[drive.state + 1], state.shaft_torque]);
+    }
+    for actuator in &m.actuators {
+        put(&[x[actuator.state], inputs[actuator.input], w.joints[actuator.joint].u.x()]);
+    }
+    if m.hold.is_some() {
+        put(&[w.hold_force]);
+    }
+}
+
+fn body_row(
+    m: &Model,
+    body: &Body,
+    motion: &Motion<f64>,
+    loads: &Loads<f64>,
+    felt_T: Vec3<f64>,
+    x: &[f64],
+) -> [f64; BODY.len()] {
+    let q = motion::read(body, x);
+    let felt_B = motion.R_TB.back(felt_T) * (1.0 / body.mass);
+    let moment_B = motion.R_WB.back(loads.moment_W);
+    [
+        q.s,
+        q.y,
+        q.z - body.position[2],
+        q.roll,
+        q.pitch,
+        q.yaw,
+        q.v.x(),
+        felt_B.y(),
+        felt_B.z() + m.gravity,
+        motion.w_B.z(),
+        motion.track.curvature,
+        m.cant_base * motion.track.cant_angle.sin(),
+        moment_B.z(),
+    ]
+}
+
+fn wheel_row(state: &WheelState<f64>, spin_speed: f64) -> [f64; WHEEL.len()] {
+    let [x, y, z] = state.force_T.0;
+    let [tread, root, flange] = state.normal;
+    let (angle, steep) = (state.contact_angle, state.steep_force);
+    [-z, -y, x, state.t_gamma, state.spin_work, angle, steep, tread, root, flange, spin_speed]
+}

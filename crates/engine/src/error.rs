@@ -1,0 +1,44 @@
+//! What can go wrong in the engine: bad specs (errors) and ends of motion (faults, which are outcomes).
+
+use crate::control::ControlError;
+use klingel_physics::contact::ContactError;
+use klingel_physics::elements::StopError;
+use klingel_physics::track::AlignmentError;
+use thiserror::Error;
+
+/// A spec that cannot become a model, or a model that has no start.
+#[derive(Debug, Error)]
+pub enum EngineError {
+    #[error("the spec is not readable: {0}")]
+    Json(#[from] serde_json::Error),
+    #[error("{place}: {value} is not allowed; {remedy}")]
+    Value { place: String, value: String, remedy: String },
+    #[error("{place}: there is no {what} called `{name}`; known: {known}")]
+    Unknown { place: String, what: &'static str, name: String, known: String },
+    #[error(transparent)]
+    Track(#[from] AlignmentError),
+    #[error("stop `{name}`: {source}")]
+    Stop { name: String, source: StopError },
+    #[error("wheel-rail pair {index}: {source}")]
+    Contact { index: usize, source: ContactError },
+    #[error("controller: {0}")]
+    Control(#[from] ControlError),
+    #[error(
+        "no static equilibrium at {speed} m/s: after {iterations} iterations the largest residual is {residual:.3e} \
+         in {state}; check stiffnesses, preloads and wheel loads"
+    )]
+    Equilibrium { speed: f64, iterations: usize, residual: f64, state: String },
+    #[error("the run was cancelled at {time:.3} s")]
+    Cancelled { time: f64 },
+}
+
+/// Why a motion ended before its time. Values, not exceptions: a batch goes on.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Fault {
+    #[error("derailed: {wheel} left the range of its contact table (lateral shift {shift_mm:.1} mm)")]
+    Derailed { wheel: String, shift_mm: f64 },
+    #[error("unstable: state {state} is no longer finite")]
+    Unstable { state: String },
+    #[error("controller failed: {0}")]
+    Control(String),
+}

@@ -1,0 +1,145 @@
+//! The compiled model: constant arrays, one `Vec` per element kind, every name resolved to an index.
+//! Made by `compile`; read by `rates`; never changed by a run.
+
+use crate::spec::RunSpec;
+use klingel_physics::contact::{ContactTable, CreepForce};
+use klingel_physics::drives::{self, Actuator};
+use klingel_physics::elements::{Bushing, Maxwell, Stop};
+use klingel_physics::track::Alignment;
+use std::sync::Arc;
+
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub track: Alignment,
+    pub cant_base: f64,
+    /// \[m/s2\]
+    pub gravity: f64,
+    /// Initial and held speed \[m/s\].
+    pub speed: f64,
+    /// Arc length of the design frame's origin at the start \[m\].
+    pub start: f64,
+    pub bodies: Vec<Body>,
+    pub rotors: Vec<Rotor>,
+    pub joints: Vec<Joint>,
+    pub bushings: Vec<(usize, Bushing)>,
+    pub maxwells: Vec<MaxwellIn>,
+    pub stops: Vec<(usize, usize, Stop)>,
+    pub actuators: Vec<ActuatorIn>,
+    pub wheels: Vec<Wheel>,
+    pub drives: Vec<Drive>,
+    pub drag: Option<(usize, [f64; 3])>,
+    pub hold: Option<Hold>,
+    pub creep: CreepForce,
+    /// Contact damping over elastic force and approach speed \[s/m\].
+    pub contact_dissipation: f64,
+    /// Decay rate of each state that the integrator takes exactly \[1/s\]; zero for most.
+    pub poles: Vec<f64>,
+    /// Dotted name of each state, for messages and linear models.
+    pub state_names: Vec<String>,
+    /// Held inputs before any controller acts: voltages of the drives, then force commands of the actuators.
+    pub inputs: Vec<f64>,
+    pub run: RunSpec,
+}
+
+#[derive(Clone, Debug)]
+pub struct Body {
+    pub name: String,
+    /// \[kg\]
+    pub mass: f64,
+    /// \[kg m2\]
+    pub inertia: [f64; 3],
+    /// Centre of mass in the design frame \[m\].
+    pub position: [f64; 3],
+    pub pitches: bool,
+    /// First of its states: s, y, z, roll, (pitch,) yaw, then the velocities vx, vy, vz in T and wx, (wy,) wz in B.
+    pub state: usize,
+}
+
+/// A part that spins about the y axis of its body; its speed is positive when the vehicle rolls forward.
+#[derive(Clone, Debug)]
+pub struct Rotor {
+    pub name: String,
+    pub body: usize,
+    /// \[kg m2\]
+    pub inertia: f64,
+    pub state: usize,
+}
+
+/// Two bodies and a point on each; the force acts at the point of `b`, resolved in the frame of `a`.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    pub a: usize,
+    pub b: usize,
+    /// In the body frames, from the centres of mass \[m\].
+    pub point_a: [f64; 3],
+    pub point_b: [f64; 3],
+    /// Whether any element of it has a rotational law.
+    pub turns: bool,
+}
+
+#[derive(Clone, Debug)]
+pub struct MaxwellIn {
+    pub name: String,
+    pub joint: usize,
+    pub axis: usize,
+    pub law: Maxwell,
+    pub state: usize,
+}
+
+#[derive(Clone, Debug)]
+pub struct ActuatorIn {
+    pub name: String,
+    pub joint: usize,
+    pub law: Actuator,
+    /// Force and its rate.
+    pub state: usize,
+    pub input: usize,
+}
+
+#[derive(Clone, Debug)]
+pub struct Wheel {
+    pub name: String,
+    pub body: usize,
+    pub rotor: usize,
+    /// +1 right, -1 left.
+    pub sign: f64,
+    pub table: Arc<ContactTable>,
+    pub friction: f64,
+    /// Half distance of the tape circles \[m\].
+    pub half_tape_distance: f64,
+    /// Nominal radius \[m\].
+    pub radius: f64,
+    /// Point on the axle line in the tape-circle plane, from the centre of mass, body frame \[m\].
+    pub centre: [f64; 3],
+}
+
+#[derive(Clone, Debug)]
+pub struct Drive {
+    pub name: String,
+    pub body: usize,
+    pub rotor: usize,
+    pub law: drives::Drive,
+    /// +1 where the motor turns with the wheel, -1 against it.
+    pub gear_sense: f64,
+    /// \[V\]
+    pub voltage_max: f64,
+    /// Armature current, motor speed, shaft twist.
+    pub state: usize,
+    pub input: usize,
+}
+
+#[derive(Clone, Debug)]
+pub struct Hold {
+    pub body: usize,
+    /// \[N s/m\]
+    pub proportional: f64,
+    /// \[N/m\]
+    pub integral: f64,
+    pub state: usize,
+}
+
+impl Model {
+    pub fn state_count(&self) -> usize {
+        self.state_names.len()
+    }
+}

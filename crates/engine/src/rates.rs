@@ -1,0 +1,81 @@
+#![allow(non_snake_case)] // monogram notation
+//! The right-hand side of the model: states and held inputs to rates of the states. The page to read first.
+//! It reads like the theory, allocates nothing, and is written once for `f64` and for dual numbers.
+
+use crate::error::Fault;
+use crate::model::Model;
+use crate::motion::{Motion, motion};
+use crate::newton_euler::newton_euler;
+use crate::suspension::{self, JointState};
+use crate::traction::{self, DriveState};
+use crate::wheel_rail::{WheelState, wheels};
+use klingel_physics::Scalar;
+use klingel_physics::math::Vec3;
+
+/// Forces and moments about the centre of mass: from joints resolved in W, from the track resolved in T.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Loads<S> {
+    pub force_W: Vec3<S>,
+    pub moment_W: Vec3<S>,
+    pub force_T: Vec3<S>,
+    pub moment_T: Vec3<S>,
+}
+
+/// Everything `rates` computes on its way; channels are read from it.
+#[derive(Clone, Debug)]
+pub struct Workspace<S> {
+    pub motions: Vec<Motion<S>>,
+    pub loads: Vec<Loads<S>>,
+    pub joints: Vec<JointState<S>>,
+    pub wheels: Vec<WheelState<S>>,
+    pub drives: Vec<DriveState<S>>,
+    /// Torque on each rotor, forward positive \[N m\].
+    pub rotor_torque: Vec<S>,
+    /// Momentum of the rotors of each body \[kg m2/s\], and the torque they take \[N m\].
+    pub rotor_momentum: Vec<S>,
+    pub rotor_reaction: Vec<S>,
+    /// Force on each body without gravity, in T \[N\]: what an accelerometer feels.
+    pub felt_T: Vec<Vec3<S>>,
+    pub hold_force: S,
+}
+
+impl<S: Scalar> Workspace<S> {
+    pub fn new(m: &Model) -> Self {
+        let bodies = m.bodies.len();
+        Self {
+            motions: vec![Motion::default(); bodies],
+            loads: vec![Loads::default(); bodies],
+            joints: vec![JointState::default(); m.joints.len()],
+            wheels: vec![WheelState::default(); m.wheels.len()],
+            drives: vec![DriveState::default(); m.drives.len()],
+            rotor_torque: vec![S::zero(); m.rotors.len()],
+            rotor_momentum: vec![S::zero(); bodies],
+            rotor_reaction: vec![S::zero(); bodies],
+            felt_T: vec![Vec3::zero(); bodies],
+            hold_force: S::zero(),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.loads.fill(Loads::default());
+        self.rotor_torque.fill(S::zero());
+        self.rotor_momentum.fill(S::zero());
+        self.rotor_reaction.fill(S::zero());
+    }
+}
+
+/// Rates `dx` of the states `x` under the held `inputs` (drive voltages \[V\], then actuator force commands \[N\]).
+pub fn rates<S: Scalar>(m: &Model, x: &[S], inputs: &[f64], w: &mut Workspace<S>, dx: &mut [S]) -> Result<(), Fault> {
+    w.clear();
+    for (body, state) in m.bodies.iter().zip(&mut w.motions) {
+        *state = motion(&m.track, body, x, dx);
+    }
+    wheels(m, x, w)?;
+    suspension::joints(m, w);
+    suspension::elements(m, x, inputs, w, dx);
+    suspension::apply(m, w);
+    traction::motors(m, x, inputs, w, dx);
+    traction::along_track(m, x, w, dx);
+    newton_euler(m, w, x, dx);
+    Ok(())
+}

@@ -1,0 +1,235 @@
+//! One run: equilibrium, then fixed steps with sampled controllers in between, and rows of channels.
+//! Controllers act on what was measured one sample ago: that is the computation delay.
+
+use crate::channels;
+use crate::compile::compile;
+use crate::control::Controller;
+use crate::equilibrium::{design_state, equilibrium};
+use crate::error::{EngineError, Fault};
+use crate::integrate::Etdrk4;
+use crate::model::Model;
+use crate::rates::{Workspace, rates};
+use crate::spec::Spec;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// How far a run is, and the wish to end it; shared with whoever watches.
+#[derive(Debug, Default)]
+pub struct Progress {
+    fraction: AtomicU64,
+    cancelled: AtomicBool,
+}
+
+impl Progress {
+    /// 0 to 1.
+    pub fn fraction(&self) -> f64 {
+        f64::from_bits(self.fraction.load(Ordering::Relaxed))
+    }
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+    fn set(&self, fraction: f64) {
+        self.fraction.store(fraction.to_bits(), Ordering::Relaxed);
+    }
+    fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+}
+
+/// The outcome of a run.
+#[derive(Clone, Debug)]
+pub struct TimeSeries {
+    /// Name and unit of each column.
+    pub channels: Vec<(String, String)>,
+    /// \[s\]
+    pub time: Vec<f64>,
+    /// One row a time, row after row.
+    pub rows: Vec<f64>,
+    /// Why and when the motion ended before its time.
+    pub fault: Option<(f64, Fault)>,
+    /// Vertical load of each wheel in the equilibrium \[N\].
+    pub static_wheel_loads: Vec<(String, f64)>,
+    /// CPU time of the stepping thread \[s\], and right-hand sides evaluated.
+    pub cpu_time: f64,
+    pub evaluations: u64,
+}
+
+/// Samples between two looks at the cancel flag.
+const POLL: usize = 200;
+
+/// Compiles and runs a spec.
+///
+/// # Errors
+/// Those of `compile`, no equilibrium, or a cancelled run. A derailment is not an error but `TimeSeries::fault`.
+pub fn simulate(spec: &Spec, progress: &Progress) -> Result<TimeSeries, EngineError> {
+    let model = compile(spec)?;
+    let controller = spec.control.as_ref().map(Controller::compile).transpose()?;
+    run(&model, controller, progress)
+}
+
+/// A controller with its wires: which channels it measures and which inputs it drives.
+struct Wired {
+    controller: Controller,
+    measured: Vec<usize>,
+    driven: Vec<usize>,
+    values: Vec<f64>,
+    every: usize,
+}
+
+/// Runs a compiled model.
+///
+/// # Errors
+/// No equilibrium, a controller wired to unknown channels, or a cancelled run.
+pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Result<TimeSeries, EngineError> {
+    let start = cpu_time::ThreadTime::now();
+    let mut x = if m.run.equilibrium { equilibrium(m)? } else { design_state(m) };
+    let channels = channels::list(m);
+    let mut wired = controller.map(|c| Wired::new(m, c, &channels)).transpose()?;
+    let probes = wired.as_ref().map_or(0, |w| w.controller.probe_channels().len());
+    let width = channels.len() + probes;
+
+    let step = m.run.step;
+    let steps = (m.run.duration / step).round() as usize;
+    let record_every = (m.run.record_interval / step).round() as usize;
+    let mut series = TimeSeries {
+        channels: channels.into_iter().map(|(name, unit)| (name, unit.to_string())).collect(),
+        time: Vec::with_capacity(steps / record_every + 1),
+        rows: Vec::with_capacity((steps / record_every + 1) * width),
+        fault: None,
+        static_wheel_loads: Vec::new(),
+        cpu_time: 0.0,
+        evaluations: 0,
+    };
+    if let Some(w) = &wired {
+        series.channels.extend(w.controller.probe_channels().iter().cloned());
+    }
+
+    let mut inputs = m.inputs.clone();
+    let mut w = Workspace::<f64>::new(m);
+    let mut first = vec![0.0; x.len()];
+    let mut row = vec![0.0; width];
+    let mut scheme = Etdrk4::new(step, &m.poles);
+    kick(m, &mut x)?;
+    for k in 0..=steps {
+        let time = k as f64 * step;
+        let sampled = wired.as_ref().is_some_and(|c| k % c.every == 0);
+        let evaluated = rates(m, &x, &inputs, &mut w, &mut first).and_then(|()| {
+            if k % record_every == 0 || sampled {
+                channels::fill(m, &x, &inputs, &w, &mut row);
+            }
+            match &mut wired {
+                Some(c) if sampled => c.sample(&mut row, k == 0),
+                _ => Ok(()),
+            }
+        });
+        if k == 0 {
+            series.static_wheel_loads =
+                m.wheels.iter().zip(&w.wheels).map(|(w, s)| (w.name.clone(), -s.force_T.z())).collect();
+        }
+        if evaluated.is_ok() && k % record_every == 0 {
+            series.time.push(time);
+            series.rows.extend_from_slice(&row);
+        }
+        let advanced = evaluated.and_then(|()| {
+            if k == steps {
+                return Ok(());
+            }
+            scheme.advance(&mut x, &first, |_, at, f| rates(m, at, &inputs, &mut w, f))?;
+            finite(m, &x)
+        });
+        series.evaluations += 4;
+        if let Err(fault) = advanced {
+            series.fault = Some((time, fault));
+            break;
+        }
+        if let (Some(c), true) = (&wired, sampled) {
+            c.drive(&mut inputs);
+        }
+        if k % POLL == 0 {
+            progress.set(time / m.run.duration);
+            if progress.is_cancelled() {
+                return Err(EngineError::Cancelled { time });
+            }
+        }
+    }
+    progress.set(1.0);
+    series.cpu_time = start.elapsed().as_secs_f64();
+    Ok(series)
+}
+
+impl Wired {
+    fn new(m: &Model, controller: Controller, channels: &[channels::Channel]) -> Result<Self, EngineError> {
+        let find = |names: &mut dyn Iterator<Item = &str>, what: &'static str, name: &str| {
+            let names: Vec<&str> = names.collect();
+            names.iter().position(|n| *n == name).ok_or_else(|| EngineError::Unknown {
+                place: "control".into(),
+                what,
+                name: name.into(),
+                known: format!("{} of them, such as {}", names.len(), names.first().unwrap_or(&"none")),
+            })
+        };
+        let measured = controller
+            .measurement_names()
+            .iter()
+            .map(|name| find(&mut channels.iter().map(|c| c.0.as_str()), "channel", name))
+            .collect::<Result<Vec<_>, _>>()?;
+        let targets: Vec<String> = (m.drives.iter().map(|d| format!("{}.armature_voltage", d.name)))
+            .chain(m.actuators.iter().map(|a| format!("{}.force", a.name)))
+            .collect();
+        let driven = controller
+            .command_targets()
+            .iter()
+            .map(|name| find(&mut targets.iter().map(String::as_str), "input", name))
+            .collect::<Result<Vec<_>, _>>()?;
+        let every = (controller.sample_time() / m.run.step).round() as usize;
+        Ok(Self { values: vec![0.0; measured.len()], controller, measured, driven, every })
+    }
+
+    /// Measures, steps the controller and writes its probes behind the channels of the row.
+    fn sample(&mut self, row: &mut [f64], first: bool) -> Result<(), Fault> {
+        for (value, &i) in self.values.iter_mut().zip(&self.measured) {
+            *value = row[i];
+        }
+        let stepped = if first { self.controller.reset(&self.values) } else { self.controller.step(&self.values) };
+        stepped.map_err(|e| Fault::Control(e.to_string()))?;
+        let probes = self.controller.probes();
+        let at = row.len() - probes.len();
+        row[at..].copy_from_slice(probes);
+        Ok(())
+    }
+
+    fn drive(&self, inputs: &mut [f64]) {
+        for (&i, &command) in self.driven.iter().zip(self.controller.commands()) {
+            inputs[i] = command;
+        }
+    }
+}
+
+fn kick(m: &Model, x: &mut [f64]) -> Result<(), EngineError> {
+    for kick in &m.run.kicks {
+        let body = m.bodies.iter().find(|b| b.name == kick.body).ok_or_else(|| EngineError::Unknown {
+            place: "run.kicks".into(),
+            what: "body",
+            name: kick.body.clone(),
+            known: m.bodies.iter().map(|b| b.name.as_str()).collect::<Vec<_>>().join(", "),
+        })?;
+        let q = &mut x[body.state..];
+        let [roll, pitch, yaw] = kick.rotation;
+        let [wx, wy, wz] = kick.angular_velocity;
+        let add = if body.pitches {
+            vec![roll, pitch, yaw, kick.velocity[0], kick.velocity[1], kick.velocity[2], wx, wy, wz]
+        } else {
+            vec![roll, yaw, kick.velocity[0], kick.velocity[1], kick.velocity[2], wx, wz]
+        };
+        for (value, extra) in q.iter_mut().zip(kick.displacement.iter().chain(&add)) {
+            *value += extra;
+        }
+    }
+    Ok(())
+}
+
+fn finite(m: &Model, x: &[f64]) -> Result<(), Fault> {
+    match x.iter().position(|v| !v.is_finite()) {
+        Some(i) => Err(Fault::Unstable { state: m.state_names[i].clone() }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,122 @@
+#![allow(non_snake_case)] // monogram notation
+//! Every wheel on its rail: placement in the contact table, creepages in the contact plane, forces on the wheel.
+//! Rails are rigid and lie still in the track frame, so absolute wheel velocities are slip velocities.
+
+use crate::error::Fault;
+use crate::model::{Model, Wheel};
+use crate::motion::Motion;
+use crate::rates::Workspace;
+use klingel_physics::Scalar;
+use klingel_physics::contact::RollingContact;
+use klingel_physics::math::Vec3;
+
+/// Speed v0 that keeps creepages finite at standstill \[m/s\].
+const CREEP_REFERENCE_FLOOR: f64 = 0.1;
+/// A patch counts towards the reported contact angle above this load \[N\].
+const REPORTED_LOAD: f64 = 1000.0;
+/// A patch steeper than this is reported as steep \[rad\]: 15 degrees.
+const STEEP: f64 = 0.261_799_387_799_149_4;
+
+/// What a wheel and its rail do to each other.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WheelState<S> {
+    /// On the wheel, resolved in T \[N\].
+    pub force_T: Vec3<S>,
+    /// Torque on the rotor about its axis, positive when it speeds up forward rolling \[N m\].
+    pub spin_torque: S,
+    /// Normal force of the tread, root and flange patch \[N\].
+    pub normal: [S; 3],
+    /// Sum of |Fx xi| + |Fy eta| \[N\].
+    pub t_gamma: S,
+    /// Sum of |Mz phi| \[N\].
+    pub spin_work: S,
+    /// Steepest patch above 1 kN \[rad\], and load carried by patches over 15 degrees \[N\].
+    pub contact_angle: f64,
+    pub steep_force: f64,
+}
+
+pub fn wheels<S: Scalar>(m: &Model, x: &[S], w: &mut Workspace<S>) -> Result<(), Fault> {
+    for (wheel, state) in m.wheels.iter().zip(&mut w.wheels) {
+        let motion = &w.motions[wheel.body];
+        let (forces, moment) = wheel_on_rail(m, wheel, motion, x[m.rotors[wheel.rotor].state])?;
+        let loads = &mut w.loads[wheel.body];
+        loads.force_T += forces.force_T;
+        loads.moment_T += moment;
+        w.rotor_torque[wheel.rotor] += forces.spin_torque;
+        *state = forces;
+    }
+    Ok(())
+}
+
+/// Forces of one wheel, and their moment about the body's centre of mass in T.
+fn wheel_on_rail<S: Scalar>(
+    m: &Model,
+    wheel: &Wheel,
+    body: &Motion<S>,
+    spin: S,
+) -> Result<(WheelState<S>, Vec3<S>), Fault> {
+    let sign = wheel.sign;
+    // point on the axle line in the tape-circle plane: position and velocity in T
+    let centre_B = Vec3::constant(wheel.centre);
+    let arm_T = body.R_TB.apply(centre_B);
+    let p_T = body.p_T + arm_T;
+    let v_T = body.v_T + body.R_TB.apply(body.w_B.cross(centre_B));
+
+    // coordinates of the contact table, which is made for a right wheel
+    let shift = p_T.y() * sign - body.sin_roll * (sign * wheel.radius) - wheel.half_tape_distance;
+    let depth = p_T.z() + body.cos_roll * wheel.radius;
+    let roll = body.sin_roll * sign;
+    let yaw = body.yaw * sign;
+    let patches = wheel
+        .table
+        .patches(shift, depth, roll, yaw)
+        .map_err(|_| Fault::Derailed { wheel: wheel.name.clone(), shift_mm: 1e3 * shift.value() })?;
+
+    let w_F = Vec3::new(body.w_F.x(), -spin, body.w_F.z());
+    let mean_speed = (v_T.x() + spin * wheel.radius) * 0.5;
+    let v_ref = (mean_speed.square() + CREEP_REFERENCE_FLOOR * CREEP_REFERENCE_FLOOR).sqrt();
+
+    let (mut state, mut moment_T) = (WheelState::default(), Vec3::zero());
+    for (zone, patch) in patches.iter().enumerate() {
+        if patch.active {
+            let (sin, cos) = patch.angle.sin_cos();
+            // the contact of a yawed wheel runs ahead: x = r tan(delta) psi
+            let ahead = patch.radius * yaw * sin / cos;
+            let drop = ahead.square() / patch.radius * 0.5;
+            let point_F = Vec3::new(ahead, patch.y_wheel * sign, patch.radius - drop);
+            let point_T = body.R_TF.apply(point_F);
+            let slip_T = v_T + body.R_TF.apply(w_F.cross(point_F));
+            let across = Vec3::new(S::zero(), cos, sin * -sign);
+            let into_rail = Vec3::new(S::zero(), sin * sign, cos);
+            let w_T = body.R_TF.apply(w_F);
+
+            let damping = (slip_T.dot(into_rail) * m.contact_dissipation + 1.0).positive();
+            let normal = patch.normal_force * damping;
+            let (xi, eta, phi) = (slip_T.x() / v_ref, slip_T.dot(across) / v_ref, w_T.dot(into_rail) / v_ref);
+            let friction = S::constant(wheel.friction);
+            let rolling = RollingContact { a: patch.a, b: patch.b, normal_force: normal, friction, xi, eta, phi };
+            let [fx, fy, mz] = m.creep.force(&rolling);
+
+            let force_T = Vec3::new(fx, S::zero(), S::zero()) + across * fy - into_rail * normal;
+            let spin_moment_T = into_rail * mz;
+            state.force_T += force_T;
+            moment_T += (arm_T + point_T).cross(force_T) + spin_moment_T;
+            let turning_F = point_F.cross(body.R_TF.back(force_T)) + body.R_TF.back(spin_moment_T);
+            state.spin_torque -= turning_F.y();
+            state.normal[zone] = normal;
+            state.t_gamma += (fx * xi).abs() + (fy * eta).abs();
+            state.spin_work += (mz * phi).abs();
+            report_angle(&mut state, patch.angle.value(), normal.value());
+        }
+    }
+    Ok((state, moment_T))
+}
+
+fn report_angle<S>(state: &mut WheelState<S>, angle: f64, load: f64) {
+    if load > REPORTED_LOAD {
+        state.contact_angle = state.contact_angle.max(angle.abs());
+    }
+    if angle.abs() > STEEP {
+        state.steep_force += load;
+    }
+}
