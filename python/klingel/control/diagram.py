@@ -62,12 +62,12 @@ class Diagram:
         elif limit is not None:
             lower = -limit
         return self._add(
-            "pi", name, input=error, proportional=proportional, integral=integral, lower=lower, upper=upper
+            "pi", name, input=error, proportional=proportional, integral=integral, lower=lower, upper=limit
         )
 
     def saturation(self, name: str, signal: str, lower: Gain, upper: Gain) -> str:
         """The signal held between two limits."""
-        return self._add("saturation", name, input=signal, lower=lower, upper=upper)
+        return self._add("saturation", name, input=signal, lower=lower, upper=limit)
 
     def delay(self, name: str, signal: str, samples: int) -> str:
         """The signal some samples ago; the signal itself for none."""
