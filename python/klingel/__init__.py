@@ -6,34 +6,62 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from klingel.doctor import warn_if_stale
+
 if TYPE_CHECKING:
-    from klingel import contact, control, library, track
+    from klingel import assess, contact, control, drives, library, plot, report, study, track
+    from klingel.result import load, progress, save, simulate, simulate_spec
+    from klingel.scenario import Scenario
     from klingel.track import Track
     from klingel.vehicle import Vehicle
 
 __version__ = "0.1.0"
 
-# Public name -> module, and the name inside it (None: the module itself).
-_NAMES: dict[str, tuple[str, str | None]] = {
-    "Track": ("klingel.track", "Track"),
-    "Vehicle": ("klingel.vehicle", "Vehicle"),
-    "contact": ("klingel.contact", None),
-    "control": ("klingel.control", None),
-    "library": ("klingel.library", None),
-    "track": ("klingel.track", None),
+_MODULES = ("assess", "contact", "control", "drives", "library", "plot", "report", "study", "track")
+
+_HOMES = {
+    "Scenario": "klingel.scenario",
+    "Track": "klingel.track",
+    "Vehicle": "klingel.vehicle",
+    "load": "klingel.result",
+    "progress": "klingel.result",
+    "save": "klingel.result",
+    "simulate": "klingel.result",
+    "simulate_spec": "klingel.result",
 }
 
-__all__ = ["Track", "Vehicle", "__version__", "contact", "control", "library", "track"]
+__all__ = [
+    "Scenario",
+    "Track",
+    "Vehicle",
+    "__version__",
+    "assess",
+    "contact",
+    "control",
+    "drives",
+    "library",
+    "load",
+    "plot",
+    "progress",
+    "report",
+    "save",
+    "simulate",
+    "simulate_spec",
+    "study",
+    "track",
+]
 
 
 def __getattr__(name: str) -> Any:
-    try:
-        module, attribute = _NAMES[name]
-    except KeyError:
-        raise AttributeError(f"module 'klingel' has no attribute {name!r}; it has {', '.join(__all__)}") from None
-    loaded = importlib.import_module(module)
-    return loaded if attribute is None else getattr(loaded, attribute)
+    if name in _MODULES:
+        return importlib.import_module(f"klingel.{name}")
+    if name in _HOMES:
+        return getattr(importlib.import_module(_HOMES[name]), name)
+    raise AttributeError(f"module 'klingel' has no attribute {name!r}; it has {', '.join(__all__)}")
 
 
 def __dir__() -> list[str]:
     return sorted(__all__)
+
+
+warn_if_stale()

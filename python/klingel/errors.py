@@ -74,6 +74,10 @@ class SimulationError(KlingelError):
     """A run that could not be made or, with `strict=True`, did not complete; the message has time and place."""
 
 
+class RunCancelledError(SimulationError):
+    """A run was ended through its progress object."""
+
+
 class CoreMissingError(KlingelError):
     """The compiled core is not installed."""
 

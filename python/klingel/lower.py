@@ -1,5 +1,5 @@
 """From railway words to the core's spec: a Scenario becomes bodies, joints, force elements, wheels and drives.
-The design position is that of the loaded vehicle on straight level track; x from its centre, z down from top of rail."""
+The design position is the loaded vehicle on straight level track; x from its centre, z down from the top of rail."""
 
 from __future__ import annotations
 

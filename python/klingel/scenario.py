@@ -19,8 +19,8 @@ CreepLaw = Literal["fastsim", "polach", "linear"]
 RAILS = ("60E1", "UIC60")
 """Rail profiles known by name."""
 
-ELEMENTS_MAX = 40
-"""Finest FASTSIM grid: elements along, and across, the ellipse."""
+ELEMENTS_MIN, ELEMENTS_MAX = 2, 40
+"""Coarsest and finest FASTSIM grid: elements along, and across, the ellipse."""
 
 RUN_OUT = 2.0
 """Track kept free before the last and ahead of the first wheelset [m], for the drift of a slow speed hold."""
@@ -143,9 +143,9 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
         yield Problem("creep_law", scenario.creep_law, "is not known", nearest(scenario.creep_law, get_args(CreepLaw)))
     if scenario.rail not in RAILS:
         yield Problem("rail", scenario.rail, "is not known", nearest(scenario.rail, RAILS))
-    elements = scenario.creep_elements
-    if len(elements) != 2 or any(n not in range(1, ELEMENTS_MAX + 1) for n in elements):
-        remedy = f"give two whole numbers from 1 to {ELEMENTS_MAX}"
+    elements: tuple[object, ...] = scenario.creep_elements
+    if len(elements) != 2 or any(n not in range(ELEMENTS_MIN, ELEMENTS_MAX + 1) for n in elements):
+        remedy = f"give two whole numbers from {ELEMENTS_MIN} to {ELEMENTS_MAX}"
         yield Problem("creep_elements", elements, "is no grid (along, across)", remedy)
     ratio = scenario.record_interval / scenario.step if scenario.step > 0.0 else 1.0
     if abs(ratio - round(ratio)) > 1e-9 or ratio < 0.5:

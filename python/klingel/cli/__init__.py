@@ -1,5 +1,39 @@
-"""Command line of Klingel."""
+"""Command line of Klingel: `klingel study perez2004`, `run`, `vehicles`, `doctor`.
+Bad input prints one message and exits with 2; Ctrl-C exits with 130; nothing half-written is left behind."""
+
+from __future__ import annotations
+
+import sys
+
+from klingel.errors import InputError, KlingelError, RunCancelledError
 
 
 def main() -> None:
-    """Run the command line."""
+    """Entry point of the `klingel` command."""
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: list[str]) -> int:
+    """Run the command line; returns the exit code: 0, 1 for a failure, 2 for bad input, 130 for Ctrl-C."""
+    from klingel.cli.app import app
+
+    try:
+        app(arguments, prog_name="klingel", standalone_mode=True)
+    except SystemExit as ended:
+        return ended.code if isinstance(ended.code, int) else 0 if ended.code is None else 1
+    except InputError as error:
+        return _say("bad input", error, 2)
+    except (KeyboardInterrupt, RunCancelledError):
+        return _say("cancelled", "finished runs are kept", 130)
+    except KlingelError as error:
+        return _say("failed", error, 1)
+    return 0
+
+
+def _say(head: str, text: object, code: int) -> int:
+    from rich.console import Console
+    from rich.text import Text
+
+    console = Console(stderr=True, soft_wrap=True)
+    console.print(Text.assemble((f"{head}: ", "bold red"), str(text)))
+    return code

@@ -1,5 +1,5 @@
 """The vehicle library: TOML files with units and sources, shipped inside the package.
-Their check sums are pinned, so that a file edited by hand in an installation shows."""
+`klingel doctor` prints their check sums, so that two installations can be compared."""
 
 from __future__ import annotations
 

@@ -3,6 +3,8 @@ Heights are above the top of rail, inertias about the own centre of mass."""
 
 from __future__ import annotations
 
+from typing import Literal
+
 from klingel.records import Record, Sourced
 from klingel.units import Length, PositiveInertia, PositiveLength, PositiveMass
 
@@ -86,14 +88,17 @@ class Geometry(Sourced):
         return self.half_bogie_spacing + self.half_wheelbase
 
 
-class WheelProfile(Sourced):
-    """Wheel profile by name and how the wheels sit on the axle: flange backs, tape circle from the flange back."""
+TAPE_CIRCLE = 0.070
+"""Distance of the tape circle from the flange back [m] (EN 13715)."""
 
-    name: str
+
+class WheelProfile(Sourced):
+    """Wheel profile by name, and the distance of the two wheels' flange backs."""
+
+    name: Literal["S1002"]
     flange_back_distance: PositiveLength
-    tape_circle_from_flange_back: PositiveLength
 
     @property
     def half_tape_distance(self) -> float:
         """Half distance of the tape circles [m], lambda in the paper."""
-        return 0.5 * self.flange_back_distance + self.tape_circle_from_flange_back
+        return 0.5 * self.flange_back_distance + TAPE_CIRCLE

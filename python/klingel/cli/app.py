@@ -1,0 +1,114 @@
+"""The commands. Each reads its options, calls one function of the package and prints what came out.
+Heavy imports happen inside the commands, so that `--help` and `--version` stay quick."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(
+    name="klingel",
+    help="Simulator and design bench for mechatronic railway vehicles.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+study = typer.Typer(help="Run a study: all its runs, figures and the report.", no_args_is_help=True)
+app.add_typer(study, name="study")
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from klingel import __version__
+
+        typer.echo(f"klingel {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
+) -> None:
+    """Simulator and design bench for mechatronic railway vehicles."""
+
+
+@study.command()
+def perez2004(
+    out: Annotated[Path, typer.Option(help="Folder for figures, report, tables and time series.")] = Path(
+        "out/perez2004"
+    ),
+    jobs: Annotated[int | None, typer.Option(min=1, help="Runs at a time; default: one per processor.")] = None,
+    only: Annotated[
+        list[float] | None, typer.Option(help="Only the curve of this radius [m]; may be repeated.")
+    ] = None,
+    variants: Annotated[bool, typer.Option(help="Also friction 0.25 and 0.30 and the curvature database.")] = True,
+) -> None:
+    """Combined active steering and traction: three vehicles, five curves (Perez et al. 2004)."""
+    from klingel.study import perez2004 as body
+
+    body.run(out, jobs=jobs, radii=only or None, friction_variants=variants)
+
+
+@app.command()
+def run(
+    scenario: Annotated[Path, typer.Argument(help="Scenario file (TOML).")],
+    out: Annotated[Path | None, typer.Option(help="NetCDF file of the result; default: beside the scenario.")] = None,
+    rate: Annotated[float, typer.Option(min=1.0, help="Sample rate of the file [Hz].")] = 200.0,
+) -> None:
+    """Run one scenario and save its time series."""
+    from klingel.cli.progress import simulate_with_bar
+    from klingel.result import COMPLETED, save
+    from klingel.scenario import Scenario
+
+    result = simulate_with_bar(Scenario.read(scenario), scenario.stem)
+    path = save(result, out or scenario.with_suffix(".nc"), rate=rate)
+    outcome = result.attrs["outcome"]
+    typer.echo(f"{outcome}; {result.attrs['realtime_factor']:.1f} times real time; {path}")
+    if outcome != COMPLETED:
+        raise typer.Exit(1)
+
+
+@app.command()
+def vehicles(
+    name: Annotated[str | None, typer.Argument(help="Show the parameters of this one, with status and source.")] = None,
+) -> None:
+    """List the library's vehicles, or the parameters of one."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from klingel import library
+
+    if name is None:
+        table = Table("vehicle", "mass [t]", "wheels", "description")
+        for each in library.names():
+            vehicle = library.vehicle(each)
+            wheels = "independent" if vehicle.independent_wheels else "solid"
+            table.add_row(each, f"{vehicle.total_mass / 1e3:.1f}", wheels, vehicle.description)
+    else:
+        table = Table("parameter", "value", "unit", "status", "source", title=name)
+        for p in library.vehicle(name).parameters():
+            value = ", ".join(f"{v:g}" for v in p.value) if isinstance(p.value, tuple) else f"{p.value:g}"
+            table.add_row(p.key, value, "" if p.unit == "1" else p.unit, p.status, ", ".join(p.source))
+    Console().print(table)
+
+
+@app.command()
+def doctor() -> None:
+    """Check this installation: extension, packages, library files."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from klingel.doctor import examine
+
+    findings = examine()
+    table = Table("", "what", "found")
+    for finding in findings:
+        table.add_row("[green]ok[/]" if finding.good else "[red]no[/]", finding.what, finding.found)
+    Console().print(table)
+    if not all(finding.good for finding in findings):
+        sys.exit(1)

@@ -1,0 +1,6 @@
+"""Profiles of wheels and rails as people use them: named ones, measured ones from files, checked when made.
+Wheel: y from the tape circle, + to the field side, z radius increment. Rail: y from its axis, z down from its top."""
+
+from klingel.contact.profile import Profile
+
+__all__ = ["Profile"]

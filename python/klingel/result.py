@@ -1,0 +1,188 @@
+"""Running a scenario and what comes out: one xarray.Dataset a run, dotted channels with units, the spec in its header.
+On disk one two-dimensional variable per quantity and unit, written whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+import threading
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import TimeoutError as NotYet
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from klingel.doctor import core
+from klingel.errors import InputError, RunCancelledError, SimulationError
+from klingel.lower import Spec, lower
+from klingel.scenario import Scenario
+
+if TYPE_CHECKING:
+    from klingel._core import Progress
+
+DISK_RATE = 200.0
+"""Default sample rate of files [Hz]."""
+
+COMPLETED = "completed"
+"""Outcome of a run that reached its end."""
+
+FORMAT = "klingel-result-1"
+"""Layout of the files, in their attribute `format`."""
+
+_WRITING = threading.Lock()  # the netCDF library is not safe for threads
+
+
+def progress() -> Progress:
+    """How far a run is (`.fraction`, 0 to 1) and the wish to end it (`.cancel()`), for `simulate`."""
+    made: Progress = core().Progress()
+    return made
+
+
+def simulate(scenario: Scenario, *, progress: Progress | None = None, strict: bool = False) -> xr.Dataset:
+    """Run a scenario.
+
+    progress: shared with whoever watches or cancels; strict: raise when the run did not complete.
+    Returns a Dataset over `time` [s], one variable a channel with attribute `units`; attributes `spec` (JSON),
+    `outcome` ("completed", or what happened where and when), `realtime_factor` (simulated over CPU seconds of the
+    stepping thread), `static_wheel_loads` (JSON, N). Ctrl-C ends the run.
+    Errors: SimulationError for a spec that the core refuses or has no equilibrium for, and if `strict` for a run that
+    did not complete; RunCancelledError.
+    """
+    return simulate_spec(lower(scenario), progress=progress, strict=strict)
+
+
+def simulate_spec(spec: Spec, *, progress: Progress | None = None, strict: bool = False) -> xr.Dataset:
+    """Run a spec, such as that of an earlier result, `json.loads(result.attrs["spec"])`; otherwise as `simulate`."""
+    extension = core()
+    text = json.dumps(spec, allow_nan=False)
+    watched = progress if progress is not None else extension.Progress()
+    try:
+        raw = _interruptible(lambda: extension.simulate(text, watched), watched)
+    except extension.Cancelled as error:
+        raise RunCancelledError(str(error)) from None
+    except extension.CoreError as error:
+        raise SimulationError(str(error)) from None
+    result = _dataset(raw, text)
+    if strict and result.attrs["outcome"] != COMPLETED:
+        raise SimulationError(f"{spec['name']}: {result.attrs['outcome']}")
+    return result
+
+
+def _interruptible(run: Callable[[], dict[str, Any]], watched: Progress) -> dict[str, Any]:
+    """Run in a thread of its own while the main thread, the only one that Ctrl-C reaches, keeps listening."""
+    if threading.current_thread() is not threading.main_thread():
+        return run()
+    with ThreadPoolExecutor(1) as pool:
+        future: Future[dict[str, Any]] = pool.submit(run)
+        try:
+            while True:
+                try:
+                    return future.result(timeout=0.1)
+                except NotYet:
+                    if future.done():
+                        raise
+        except KeyboardInterrupt:
+            watched.cancel()
+            raise
+
+
+def _dataset(raw: Mapping[str, Any], spec: str) -> xr.Dataset:
+    fault = raw["fault"]
+    time = raw["time"]
+    columns = np.ascontiguousarray(raw["data"].T)
+    attrs = {
+        "format": FORMAT,
+        "spec": spec,
+        "outcome": COMPLETED if fault is None else f"{fault[1]}, at {fault[0]:.3f} s",
+        "realtime_factor": float(time[-1] / raw["cpu_time"]) if len(time) and raw["cpu_time"] > 0.0 else 0.0,
+        "cpu_time": float(raw["cpu_time"]),
+        "evaluations": int(raw["evaluations"]),
+        "static_wheel_loads": json.dumps(dict(raw["static_wheel_loads"])),
+    }
+    variables = {
+        name: ("time", values, {"units": unit})
+        for name, unit, values in zip(raw["channels"], raw["units"], columns, strict=True)
+    }
+    return xr.Dataset(variables, coords={"time": ("time", time, {"units": "s"})}, attrs=attrs)
+
+
+def save(result: xr.Dataset, path: str | Path, *, rate: float | None = DISK_RATE) -> Path:
+    """Write a run as NetCDF, whole or not at all.
+
+    rate: of the samples in the file [Hz], None for all; samples are taken as they are, not filtered.
+    The file has one variable per quantity and unit over (channel, time): `Q` holds the vertical force of every wheel,
+    its coordinate `Q_of` their names. Errors: InputError for a rate that does not divide that of the result.
+    """
+    path = Path(path)
+    every = _every(result, rate)
+    packed = _pack(result.isel(time=slice(None, None, every)))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f"{path.name}.{os.getpid()}-{threading.get_ident()}.tmp")
+    encoding = {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in packed.data_vars}
+    try:
+        with _WRITING:
+            packed.to_netcdf(part, engine="netcdf4", encoding=encoding)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+    return path
+
+
+def load(path: str | Path) -> xr.Dataset:
+    """Read a saved run: one variable a channel, as `simulate` gives it; errors: InputError for a missing or file."""
+    path = Path(path)
+    if not path.is_file():
+        raise InputError.single("", None, "no such file", remedy="check the path", file=str(path))
+    try:
+        with _WRITING, xr.open_dataset(path, engine="netcdf4") as opened:
+            packed = opened.load()
+    except (OSError, ValueError) as error:
+        raise InputError.single("", None, f"is no NetCDF file ({error})", file=str(path)) from None
+    if packed.attrs.get("format") != FORMAT:
+        message = "was not written by klingel.save"
+        raise InputError.single(
+            "format", packed.attrs.get("format"), message, remedy=f"wanted {FORMAT}", file=str(path)
+        )
+    return _unpack(packed)
+
+
+def _every(result: xr.Dataset, rate: float | None) -> int:
+    if rate is None or result.sizes["time"] < 2:
+        return 1
+    interval = float(result["time"][1] - result["time"][0])
+    every = 1.0 / (rate * interval)
+    if every < 0.999 or abs(every - round(every)) > 1e-6 * every:
+        remedy = f"give {1.0 / interval:g} Hz over a whole number"
+        raise InputError.single("rate", rate, "does not divide the rate of the result [Hz]", remedy=remedy)
+    return round(every)
+
+
+def _pack(result: xr.Dataset) -> xr.Dataset:
+    groups: dict[tuple[str, str], list[str]] = {}
+    for channel in result.data_vars:
+        quantity = str(channel).rpartition(".")[2]
+        groups.setdefault((quantity, result[channel].attrs["units"]), []).append(str(channel))
+    taken: set[str] = set()
+    variables: dict[str, Any] = {}
+    coordinates: dict[str, Any] = {"time": result["time"]}
+    for (quantity, unit), channels in groups.items():
+        name = quantity if quantity not in taken else f"{quantity}_{len(taken)}"
+        taken.add(name)
+        of = f"{name}_of"
+        coordinates[of] = (of, [c.rpartition(".")[0] for c in channels])
+        values = np.stack([result[c].values for c in channels])
+        variables[name] = ((of, "time"), values, {"units": unit, "quantity": quantity})
+    return xr.Dataset(variables, coords=coordinates, attrs=result.attrs)
+
+
+def _unpack(packed: xr.Dataset) -> xr.Dataset:
+    variables: dict[str, Any] = {}
+    for name, variable in packed.data_vars.items():
+        units = {"units": variable.attrs["units"]}
+        for owner, values in zip(packed[f"{name}_of"].values, variable.values, strict=True):
+            quantity = variable.attrs["quantity"]
+            variables[f"{owner}.{quantity}" if owner else quantity] = ("time", values, units)
+    return xr.Dataset(variables, coords={"time": packed["time"]}, attrs=packed.attrs)

@@ -1,0 +1,120 @@
+"""Scenario files: TOML with the keywords of Scenario, the vehicle by name or path, track and control as tables.
+Everything is checked before a scenario is made; messages name the file."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from klingel import control, library
+from klingel.errors import InputError, Problem, nearest
+from klingel.records import Record, read_toml, validated
+from klingel.scenario import Scenario, Strategy
+from klingel.track import Hand, Segment, Track
+from klingel.units import Curvature, Length, PositiveLength
+from klingel.vehicle import Vehicle
+
+STRATEGIES: dict[str, type[Any]] = {
+    "passive": control.Passive,
+    "solid_like": control.SolidLike,
+    "irw_like": control.IRWLike,
+}
+"""Names of strategies in files."""
+
+
+class _Curve(Record):
+    """Keywords of Track.curve."""
+
+    radius: PositiveLength
+    cant: Length = 0.0
+    transition: Length = 100.0
+    arc: Length = 300.0
+    straight_before: Length = 150.0
+    straight_after: Length = 150.0
+    hand: Hand = "right"
+
+
+class _Segment(Record):
+    length: PositiveLength
+    curvature: tuple[Curvature, Curvature] = (0.0, 0.0)
+    cant: tuple[Length, Length] = (0.0, 0.0)
+
+
+class _Track(Record):
+    """Exactly one of the three."""
+
+    straight: PositiveLength | None = None
+    curve: _Curve | None = None
+    segment: tuple[_Segment, ...] | None = None
+
+
+def read(path: str | Path) -> Scenario:
+    """The scenario of a file; errors: InputError.
+
+    Keys: `vehicle` (a name of the library, or the path of a vehicle file relative to this one), `speed`, one of the
+    tables `[track.curve]`, `[[track.segment]]` and the key `track.straight`, `[control]` with `strategy` and its
+    parameters, and every other keyword of Scenario.
+    """
+    path = Path(path)
+    tables = read_toml(path)
+    known = list(inspect.signature(Scenario).parameters)
+    problems = [Problem(k, tables[k], "is not a known key", nearest(k, known)) for k in tables if k not in known]
+    problems += [Problem(k, None, "is missing", "add it") for k in ("vehicle", "track", "speed") if k not in tables]
+    if problems:
+        raise InputError(problems, file=str(path))
+    try:
+        made = {"vehicle": _vehicle(tables["vehicle"], path.parent), "track": _track(tables["track"])}
+        if "control" in tables:
+            made["control"] = strategy(tables["control"])
+        return Scenario(**{**tables, **made})
+    except InputError as error:
+        raise error if error.file else error.in_file(str(path)) from None
+
+
+def strategy(table: object) -> Strategy:
+    """The strategy of a `[control]` table; errors: InputError."""
+    if not isinstance(table, Mapping) or not isinstance(table.get("strategy"), str):
+        raise InputError.single("control", table, "needs a strategy", remedy=f"use one of {', '.join(STRATEGIES)}")
+    name = table["strategy"]
+    if name not in STRATEGIES:
+        raise InputError.single("control.strategy", name, "is not known", remedy=nearest(name, list(STRATEGIES)))
+    values = {key: value for key, value in table.items() if key != "strategy"}
+    known = [field.name for field in dataclasses.fields(STRATEGIES[name])]
+    problems = [
+        Problem(f"control.{k}", v, "is not a known key", nearest(k, known)) for k, v in values.items() if k not in known
+    ]
+    if problems:
+        raise InputError(problems)
+    made: Strategy = STRATEGIES[name](**values)
+    return made
+
+
+def _vehicle(name: object, folder: Path) -> Vehicle:
+    if not isinstance(name, str):
+        raise InputError.single("vehicle", name, "is no name or path", remedy="give a library name or a .toml file")
+    return Vehicle.read(folder / name) if name.endswith(".toml") else library.vehicle(name)
+
+
+def _track(table: object) -> Track:
+    if not isinstance(table, Mapping):
+        raise InputError.single("track", table, "is no table", remedy="give [track.curve] or track.straight")
+    try:
+        return _course(validated(_Track, table))
+    except InputError as error:
+        raise error.within("track") from None
+
+
+def _course(track: _Track) -> Track:
+    given = [key for key in ("straight", "curve", "segment") if getattr(track, key) is not None]
+    if len(given) != 1:
+        remedy = "give exactly one of straight, [track.curve], [[track.segment]]"
+        raise InputError.single("", given or None, "needs one course", remedy=remedy)
+    if track.straight is not None:
+        return Track.straight(track.straight)
+    if track.curve is not None:
+        return Track.curve(**track.curve.model_dump())
+    assert track.segment is not None
+    return Track(tuple(Segment(s.length, s.curvature, s.cant) for s in track.segment))
