@@ -1,5 +1,5 @@
-"""A scenario: a vehicle on a track at a speed, with its controllers and the contact and run settings.
-Plain immutable data; `lower` turns it into the spec of the core."""
+"""The Scenario: plain immutable data, checked as a whole when made.
+Strings carry units, plain numbers are SI."""
 
 from __future__ import annotations
 
@@ -104,8 +104,8 @@ class Scenario:
 
     @classmethod
     def read(cls, path: str | Path) -> Scenario:
-        """The scenario of a TOML file (see `klingel.scenario_file`); errors: InputError."""
-        from klingel.scenario_file import read
+        """The scenario of a TOML file (see `klingel.scenario.files`); errors: InputError."""
+        from klingel.scenario.files import read
 
         return read(path)
 

@@ -12,7 +12,7 @@ from typing import Any
 from klingel import control, library
 from klingel.errors import InputError, Problem, nearest
 from klingel.records import Record, read_toml, validated
-from klingel.scenario import Scenario, Strategy
+from klingel.scenario.scenario import Scenario, Strategy
 from klingel.track import Hand, Segment, Track
 from klingel.units import Curvature, Length, PositiveLength
 from klingel.vehicle import Vehicle
