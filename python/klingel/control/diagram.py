@@ -67,7 +67,7 @@ class Diagram:
 
     def saturation(self, name: str, signal: str, lower: Gain, upper: Gain) -> str:
         """The signal held between two limits."""
-        return self._add("saturation", name, input=signal, lower=lower, upper=limit)
+        return self._add("saturation", name, input=signal, lower=lower, upper=upper)
 
     def delay(self, name: str, signal: str, samples: int) -> str:
         """The signal some samples ago; the signal itself for none."""
