@@ -43,10 +43,10 @@ fn table_f64(bencher: Bencher, shift: f64) {
 }
 
 #[divan::bench(args = [0.001, 0.0047])]
-fn table_dual3(bencher: Bencher, shift: f64) {
+fn table_dual4(bencher: Bencher, shift: f64) {
     let w = pressed(shift);
     bencher.bench(|| {
-        let d = |x, i| Dual::<3>::variable(black_box(x), i);
+        let d = |x, i| Dual::<4>::variable(black_box(x), i);
         TABLE.patches(d(shift, 0), d(w, 1), d(1e-4, 2), d(1e-3, 3))
     });
 }

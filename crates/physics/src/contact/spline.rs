@@ -5,8 +5,9 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Axis {
     pub least: f64,
-    pub most: f64,
     pub step: f64,
+    /// Number of nodes.
+    pub len: usize,
 }
 
 /// The three nodes about a place with their weights and the weights of the slope.
@@ -17,11 +18,8 @@ struct Stencil {
 }
 
 impl Axis {
-    pub fn new(least: f64, most: f64, intervals: usize) -> Self {
-        Self { least, most, step: (most - least) / intervals as f64 }
-    }
-    pub fn len(&self) -> usize {
-        ((self.most - self.least) / self.step).round() as usize + 3
+    pub fn new([least, most]: [f64; 2], intervals: usize) -> Self {
+        Self { least, step: (most - least) / intervals as f64, len: intervals + 3 }
     }
     pub fn node(&self, i: usize) -> f64 {
         self.least + (i as f64 - 1.0) * self.step
@@ -41,66 +39,95 @@ impl Axis {
     }
 }
 
-/// K values over two axes, the last one fastest.
-pub(super) fn plane<const K: usize>(nodes: &[[f64; K]], axes: &[Axis; 2], x: [f64; 2]) -> ([f64; K], [[f64; 2]; K]) {
-    let (u, v) = (axes[0].stencil(x[0]), axes[1].stencil(x[1]));
-    let (mut value, mut jacobian) = ([0.0; K], [[0.0; 2]; K]);
+/// Sums three by three rows of `W` numbers that start at `rows`, each times its weight.
+#[inline(always)]
+fn rows<const W: usize>(nodes: &[f64], first: usize, stride: usize, step: usize, u: &[f64; 3], v: &[f64; 3]) -> [f64; W] {
+    let mut sum = [0.0; W];
     for i in 0..3 {
-        let row = (u.first + i) * axes[1].len() + v.first;
         for j in 0..3 {
-            let w = [u.weight[i] * v.weight[j], u.slope[i] * v.weight[j], u.weight[i] * v.slope[j]];
-            for k in 0..K {
-                let c = nodes[row + j][k];
-                value[k] += w[0] * c;
-                jacobian[k][0] += w[1] * c;
-                jacobian[k][1] += w[2] * c;
+            let start = first + i * stride + j * step;
+            let w = u[i] * v[j];
+            for (s, c) in sum.iter_mut().zip(&nodes[start..start + W]) {
+                *s += w * c;
             }
         }
     }
-    (value, jacobian)
+    sum
 }
 
-/// K values over three axes, the last one fastest.
+/// K values over two axes, the last one fastest.
 #[inline]
-pub(super) fn space<const K: usize>(nodes: &[[f64; K]], axes: &[Axis; 3], x: [f64; 3]) -> [f64; K] {
+pub(super) fn plane<const K: usize>(nodes: &[f64], axes: &[Axis; 2], x: [f64; 2]) -> [f64; K] {
+    let (u, v) = (axes[0].stencil(x[0]), axes[1].stencil(x[1]));
+    let stride = axes[1].len * K;
+    rows(nodes, u.first * stride + v.first * K, stride, K, &u.weight, &v.weight)
+}
+
+/// The values of `plane`, bitwise, and their Jacobian.
+pub(super) fn plane_slopes<const K: usize>(nodes: &[f64], axes: &[Axis; 2], x: [f64; 2]) -> ([f64; K], [[f64; 2]; K]) {
+    let (u, v) = (axes[0].stencil(x[0]), axes[1].stencil(x[1]));
+    let stride = axes[1].len * K;
+    let sum = |u_weight, v_weight| rows(nodes, u.first * stride + v.first * K, stride, K, u_weight, v_weight);
+    let (value, du, dv): ([f64; K], [f64; K], [f64; K]) =
+        (sum(&u.weight, &v.weight), sum(&u.slope, &v.weight), sum(&u.weight, &v.slope));
+    (value, core::array::from_fn(|k| [du[k], dv[k]]))
+}
+
+/// Six values over three axes, the last one fastest.
+#[inline]
+pub(super) fn space(nodes: &[f64], axes: &[Axis; 3], x: [f64; 3]) -> [f64; 6] {
     let [u, v, t] = [0, 1, 2].map(|i| axes[i].stencil(x[i]));
-    let mut value = [0.0; K];
-    for i in 0..3 {
-        for j in 0..3 {
-            let row = ((u.first + i) * axes[1].len() + v.first + j) * axes[2].len() + t.first;
-            let w = u.weight[i] * v.weight[j];
-            let line: &[[f64; K]; 3] = nodes[row..row + 3].try_into().expect("three nodes");
-            for k in 0..K {
-                let c = t.weight[0] * line[0][k] + t.weight[1] * line[1][k] + t.weight[2] * line[2][k];
-                value[k] += w * c;
-            }
-        }
-    }
-    value
+    let (step, stride) = (axes[2].len * 6, axes[1].len * axes[2].len * 6);
+    let line = rows(nodes, u.first * stride + v.first * step + t.first * 6, stride, step, &u.weight, &v.weight);
+    along(&line, &t.weight)
 }
 
 /// The values of `space`, bitwise, and their Jacobian.
-pub(super) fn space_slopes<const K: usize>(
-    nodes: &[[f64; K]],
-    axes: &[Axis; 3],
-    x: [f64; 3],
-) -> ([f64; K], [[f64; 3]; K]) {
+pub(super) fn space_slopes(nodes: &[f64], axes: &[Axis; 3], x: [f64; 3]) -> ([f64; 6], [[f64; 3]; 6]) {
     let [u, v, t] = [0, 1, 2].map(|i| axes[i].stencil(x[i]));
-    let (mut value, mut jacobian) = ([0.0; K], [[0.0; 3]; K]);
-    for i in 0..3 {
-        for j in 0..3 {
-            let row = ((u.first + i) * axes[1].len() + v.first + j) * axes[2].len() + t.first;
-            let w = [u.weight[i] * v.weight[j], u.slope[i] * v.weight[j], u.weight[i] * v.slope[j]];
-            for k in 0..K {
-                let line = [nodes[row][k], nodes[row + 1][k], nodes[row + 2][k]];
-                let c = t.weight[0] * line[0] + t.weight[1] * line[1] + t.weight[2] * line[2];
-                let dc = t.slope[0] * line[0] + t.slope[1] * line[1] + t.slope[2] * line[2];
-                value[k] += w[0] * c;
-                jacobian[k][0] += w[1] * c;
-                jacobian[k][1] += w[2] * c;
-                jacobian[k][2] += w[0] * dc;
+    let (step, stride) = (axes[2].len * 6, axes[1].len * axes[2].len * 6);
+    let first = u.first * stride + v.first * step + t.first * 6;
+    let sum = |u_weight, v_weight| rows(nodes, first, stride, step, u_weight, v_weight);
+    let line = sum(&u.weight, &v.weight);
+    let (value, dt) = (along(&line, &t.weight), along(&line, &t.slope));
+    let (du, dv) = (along(&sum(&u.slope, &v.weight), &t.weight), along(&sum(&u.weight, &v.slope), &t.weight));
+    (value, core::array::from_fn(|k| [du[k], dv[k], dt[k]]))
+}
+
+#[inline(always)]
+fn along(line: &[f64; 18], w: &[f64; 3]) -> [f64; 6] {
+    core::array::from_fn(|k| w[0] * line[k] + w[1] * line[6 + k] + w[2] * line[12 + k])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes_are_exact_and_slopes_are_those_of_the_values() {
+        let axes = [Axis::new([0.0, 2.0], 4), Axis::new([-1.0, 1.0], 5), Axis::new([0.0, 1.0], 3)];
+        let mut nodes = vec![];
+        for i in 0..axes[0].len {
+            for j in 0..axes[1].len {
+                for k in 0..axes[2].len {
+                    let (x, y, z) = (axes[0].node(i), axes[1].node(j), axes[2].node(k));
+                    nodes.extend([1.0 + x - 2.0 * y + 3.0 * z, x * y, y * z, x * x, (x + y).sin(), z.exp()]);
+                }
+            }
+        }
+        let (h, at) = (1e-6, [0.37, -0.21, 0.66]);
+        let (value, slopes) = space_slopes(&nodes, &axes, at);
+        assert_eq!(value, space(&nodes, &axes, at));
+        assert!((value[0] - (1.0 + at[0] - 2.0 * at[1] + 3.0 * at[2])).abs() < 1e-12);
+        // x^2 is smoothed by f'' h^2 / 8.
+        assert!((value[3] - at[0] * at[0] - 0.25 * 0.25).abs() < 1e-12);
+        for m in 0..3 {
+            let (mut up, mut down) = (at, at);
+            (up[m], down[m]) = (at[m] + h, at[m] - h);
+            let (up, down) = (space(&nodes, &axes, up), space(&nodes, &axes, down));
+            for k in 0..6 {
+                assert!((slopes[k][m] - (up[k] - down[k]) / (2.0 * h)).abs() < 1e-8);
             }
         }
     }
-    (value, jacobian)
 }

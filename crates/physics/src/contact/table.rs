@@ -3,7 +3,7 @@
 
 use super::geometry::{RigidContact, Strips, first_touch};
 use super::normal::{Zone, zone_load};
-use super::spline::{Axis, plane, space, space_slopes};
+use super::spline::{Axis, plane, plane_slopes, space, space_slopes};
 use super::{ContactError, Material, PairGeometry, Profile};
 use crate::{Mask, Scalar};
 use rayon::prelude::*;
@@ -60,12 +60,12 @@ pub struct OutsideTable {
 pub struct ContactTable {
     plane: [Axis; 2],
     /// Of each zone at first touch: height w (m), then the squared tangent of the contact plane's angle in the track.
-    touch: Vec<[f64; 6]>,
+    touch: Vec<f64>,
     /// Nominal radius of the wheel, m.
     radius: f64,
     space: [[Axis; 3]; 3],
     /// Per zone: force / d^1.5, angle, y, radius, a / sqrt d, b / sqrt d over (shift, roll, sqrt(d / d_max)).
-    load: [Vec<[f64; 6]>; 3],
+    load: [Vec<f64>; 3],
     /// Places on the wheel where the zones meet: root and flange, tread and root, m.
     pub borders: [f64; 2],
 }
@@ -121,13 +121,13 @@ impl ContactTable {
     pub fn build(pair: &PairGeometry, material: &Material) -> Result<Self, ContactError> {
         let rail = pair.placed_rail()?;
         let zones = WheelZones::new(pair, &rail)?;
-        let axes = [Axis::new(SHIFT[0], SHIFT[1], SHIFT_INTERVALS), Axis::new(ROLL[0], ROLL[1], ROLL_INTERVALS)];
-        let depth = Axis::new(0.0, 1.0, DEPTH_INTERVALS);
-        let nodes = axes[0].len() * axes[1].len();
+        let axes = [Axis::new(SHIFT, SHIFT_INTERVALS), Axis::new(ROLL, ROLL_INTERVALS)];
+        let depth = Axis::new([0.0, 1.0], DEPTH_INTERVALS);
+        let nodes = axes[0].len * axes[1].len;
         let columns: Vec<[(f64, f64, Vec<[f64; 6]>); 3]> = (0..nodes)
             .into_par_iter()
             .map_init(Vec::new, |gaps, i| {
-                let (shift, roll) = (axes[0].node(i / axes[1].len()), axes[1].node(i % axes[1].len()));
+                let (shift, roll) = (axes[0].node(i / axes[1].len), axes[1].node(i % axes[1].len));
                 [0, 1, 2].map(|z| {
                     PairGeometry::gaps(&rail, &zones.strips[z], shift, roll, gaps);
                     let (gap, angle, rows) = column(&zones.strips[z], gaps, pair.radius, material, (DEPTH[z], depth));
@@ -140,10 +140,10 @@ impl ContactTable {
         }
         Ok(Self {
             plane: axes,
-            touch: columns.iter().map(|c| [c[0].0, c[1].0, c[2].0, c[0].1, c[1].1, c[2].1]).collect(),
+            touch: columns.iter().flat_map(|c| [c[0].0, c[1].0, c[2].0, c[0].1, c[1].1, c[2].1]).collect(),
             radius: pair.radius,
             space: [[axes[0], axes[1], depth]; 3],
-            load: [0, 1, 2].map(|z| columns.iter().flat_map(|c| c[z].2.iter().copied()).collect()),
+            load: [0, 1, 2].map(|z| columns.iter().flat_map(|c| c[z].2.iter().flatten().copied()).collect()),
             borders: zones.borders,
         })
     }
@@ -165,7 +165,11 @@ impl ContactTable {
     pub fn patches<S: Scalar>(&self, shift: S, w: S, roll: S, yaw: S) -> Result<[Patch<S>; 3], OutsideTable> {
         within("shift", shift, SHIFT)?;
         within("roll", roll, ROLL)?;
-        let touch = S::lift_n([shift, roll], |x| plane(&self.touch, &self.plane, x));
+        let touch = S::lift_n_lazy(
+            [shift, roll],
+            |x| plane::<6>(&self.touch, &self.plane, x),
+            |x| plane_slopes(&self.touch, &self.plane, x),
+        );
         let nearer = yaw.square() * (0.5 * self.radius);
         let mut patches = [Patch::default(); 3];
         for zone in 0..3 {
@@ -216,7 +220,7 @@ fn column(
     (deepest, axis): (f64, Axis),
 ) -> (f64, f64, Vec<[f64; 6]>) {
     let Some(touch) = first_touch(strips, gaps, radius).filter(|t| t.gap < FAR) else {
-        return (FAR, 0.0, vec![[0.0; 6]; axis.len()]);
+        return (FAR, 0.0, vec![[0.0; 6]; axis.len]);
     };
     let mut epsilon = 0.5;
     let mut penetration = Vec::with_capacity(gaps.len());
@@ -225,7 +229,7 @@ fn column(
     let first = gaps.iter().position(near).unwrap_or(0);
     let end = gaps.iter().rposition(near).map_or(first, |e| e + 1);
     let strips = strips.part(first, end);
-    let mut rows = vec![[0.0; 6]; axis.len()];
+    let mut rows = vec![[0.0; 6]; axis.len];
     for (i, row) in rows.iter_mut().enumerate().rev().take_while(|(i, _)| *i > 1) {
         let d = axis.node(i).powi(2) * deepest;
         penetration.clear();
@@ -235,7 +239,12 @@ fn column(
     }
     // Patches of a few strips tell nothing: the curve goes on to zero depth and beyond as a line.
     for i in [1, 0] {
-        rows[i] = core::array::from_fn(|k| 2.0 * rows[i + 1][k] - rows[i + 2][k]);
+        let (next, after) = (rows[i + 1], rows[i + 2]);
+        // Force and semi-axes stay positive.
+        rows[i] = core::array::from_fn(|k| {
+            let line = 2.0 * next[k] - after[k];
+            if matches!(k, 0 | 4 | 5) { line.max(0.5 * next[k]) } else { line }
+        });
     }
     (touch.gap, touch.angle, rows)
 }
