@@ -88,6 +88,7 @@ def run(
     }
     attrs = {
         "spec": json.dumps(spec(radius, speed, hand=hand, friction=friction, active=active)),
+        "format": "klingel-result-1",
         "outcome": outcome,
         "realtime_factor": 12.5,
         "static_wheel_loads": json.dumps({f"{name}.{side}": 54.5e3 for name in WHEELSETS for side in SIDES}),

@@ -72,6 +72,7 @@ class Assessment:
         realtime_factor: simulated seconds over CPU seconds of the stepping thread.
         wheelsets: the share of each wheelset, by name (not a column).
         after_curve_s: how much of the 3 s behind the curve the run covers for every wheelset (not a column).
+        static_wheel_loads: vertical load per wheel at rest [N], empty if not recorded (not a column).
     """
 
     vehicle: str
@@ -96,13 +97,16 @@ class Assessment:
     realtime_factor: float
     wheelsets: Mapping[str, WheelsetFigures]
     after_curve_s: float
+    static_wheel_loads: Mapping[str, float]
 
     def row(self) -> dict[str, float | str]:
         """The columns of the summary, in its order."""
         return {name: getattr(self, name) for name in COLUMNS}
 
 
-COLUMNS = tuple(f.name for f in fields(Assessment) if f.name not in ("wheelsets", "after_curve_s"))
+COLUMNS = tuple(
+    f.name for f in fields(Assessment) if f.name not in ("wheelsets", "after_curve_s", "static_wheel_loads")
+)
 """Columns of the summary, in its order."""
 
 
@@ -213,6 +217,7 @@ def curving(result: xr.Dataset, *, vehicle: str | None = None) -> Assessment:
         realtime_factor=header.realtime_factor,
         wheelsets=shares,
         after_curve_s=min(run.after(wheelset.name, course) for wheelset in header.wheelsets),
+        static_wheel_loads=header.static_wheel_loads,
     )
 
 

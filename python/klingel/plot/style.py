@@ -45,7 +45,7 @@ LOOKS: Mapping[str, Look] = {
 }
 """Look of each vehicle of the study."""
 
-RC: Mapping[str, Any] = {
+RC: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 9.0,
     "axes.titlesize": 10.0,
@@ -85,7 +85,7 @@ def styled() -> Any:
         >>> len(axes)
         1
     """
-    return matplotlib.rc_context({**RC})
+    return matplotlib.rc_context(RC)
 
 
 def panels(rows: int, *, width: float = 6.6, height: float = 3.9, share_x: bool = True) -> tuple[Figure, list[Axes]]:

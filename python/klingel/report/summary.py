@@ -1,0 +1,64 @@
+"""The study's summary table as questions of the report: one value, or one quantity over all curves.
+Missing runs answer NaN, so that a report of an interrupted study can still be written."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+ACTIVE = ("solid_like", "irw_like")
+SHORT = {"passive": "passive", "solid_like": "S", "irw_like": "I"}
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Reads the summary table.
+
+    Attributes:
+        table: one row a run, columns of `klingel.assess.COLUMNS`.
+    """
+
+    table: pd.DataFrame
+
+    @property
+    def radii(self) -> list[float]:
+        """Radii of the curves, sharpest first [m]."""
+        return sorted(float(radius) for radius in self.table["radius_m"].unique())
+
+    def value(self, vehicle: str, radius: float, column: str) -> float:
+        """One figure of one run, NaN if that run is missing."""
+        rows = self.table[(self.table["vehicle"] == vehicle) & (self.table["radius_m"] == radius)]
+        return float(rows[column].iloc[0]) if len(rows) else math.nan
+
+    def text(self, vehicle: str, radius: float, column: str) -> str:
+        """One word of one run, empty if that run is missing."""
+        rows = self.table[(self.table["vehicle"] == vehicle) & (self.table["radius_m"] == radius)]
+        return str(rows[column].iloc[0]) if len(rows) else ""
+
+    def over_radii(self, vehicle: str, column: str) -> np.ndarray:
+        """One figure of one vehicle in every curve, sharpest first."""
+        return np.array([self.value(vehicle, radius, column) for radius in self.radii])
+
+    def ratio(self, column: str, vehicle: str, to: str) -> np.ndarray:
+        """One figure of one vehicle over that of another, in every curve."""
+        return np.asarray(self.over_radii(vehicle, column) / self.over_radii(to, column))
+
+    def list(self, vehicle: str, column: str, digits: int) -> str:
+        """One figure of one vehicle in every curve, as `6.3 / 6.2 / ...`."""
+        return joined(self.over_radii(vehicle, column), digits)
+
+
+def joined(numbers: np.ndarray, digits: int) -> str:
+    """Numbers between slashes; a dash where there is none.
+
+    Example:
+        >>> joined(np.array([1.25, np.nan]), 1)
+        '1.2 / –'
+    """
+    return " / ".join("–" if math.isnan(number) else f"{number:.{digits}f}" for number in numbers)

@@ -1,0 +1,208 @@
+"""What the study leaves behind: tables as CSV, figures as SVG and PNG, the report, and a summary on the screen.
+Every file is written whole or not at all, and the same results give the same bytes, measured run times apart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pandas as pd
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+import klingel
+from klingel import drives, library
+from klingel.assess import COLUMNS, Assessment
+from klingel.plot import FIGURES, displacement_history, per_radius, render
+from klingel.report.columns import HEADINGS, cell
+from klingel.report.files import write_whole
+from klingel.report.page import StudyPage, study_report
+from klingel.study.cases import FRICTION, VEHICLES, Run
+
+if TYPE_CHECKING:
+    from klingel.scenario import Scenario
+    from klingel.study.perez2004 import History
+    from klingel.vehicle import Vehicle
+
+SHOWN = (
+    "vehicle", "radius_m", "speed_kmh", "y_max_mm", "y_curve_mm", "attack_angle_max_mrad", "lateral_force_max_kN",
+    "lateral_force_floor_kN", "wear_index_N", "actuator_force_max_kN", "steering_voltage_max_V",
+    "contact_angle_max_deg", "flange_contact", "outcome", "realtime_factor",
+)  # fmt: skip
+"""Columns on the screen; the file has all."""
+
+
+def summary(rows: Iterable[tuple[Run, Assessment]]) -> pd.DataFrame:
+    """The main runs as a table, ordered by vehicle and radius, columns of `klingel.assess.COLUMNS`."""
+    table = pd.DataFrame([assessment.row() for _, assessment in rows], columns=list(COLUMNS))
+    return _ordered(table)
+
+
+def variants(rows: Iterable[tuple[Run, Assessment]]) -> pd.DataFrame:
+    """The other runs as a table, with `variant` and `friction` in front."""
+    records = [{"variant": r.variant, "friction": r.friction, **assessment.row()} for r, assessment in rows]
+    table = pd.DataFrame(records, columns=["variant", "friction", *COLUMNS])
+    return _ordered(table, first=["variant"])
+
+
+def _ordered(table: pd.DataFrame, *, first: Sequence[str] = ()) -> pd.DataFrame:
+    rank = table["vehicle"].map({vehicle: i for i, vehicle in enumerate(VEHICLES)})
+    ordered = table.assign(rank=rank).sort_values([*first, "rank", "radius_m"], kind="stable")
+    return ordered.drop(columns="rank").reset_index(drop=True)
+
+
+def operating_points(vehicle: Vehicle, speeds: Iterable[float]) -> pd.DataFrame:
+    """Table 1 of the paper: what the motors do at each speed [m/s], headings with units."""
+    return pd.DataFrame(
+        [
+            {
+                "speed [km/h]": f"{3.6 * point.speed:.0f}",
+                "torque per wheel [N m]": f"{point.wheel_torque:.1f}",
+                "If normalised [-]": f"{point.field_current_normalised:.4f}",
+                "If [A]": f"{point.field_current:.3f}",
+                "Ia [A]": f"{point.armature_current:.2f}",
+                "KT [N m/A]": f"{point.torque_constant:.4f}",
+                "x VaMax [V]": f"{point.armature_voltage:.0f}",
+                "largest torque per wheel [N m]": f"{point.wheel_torque_max:.0f}",
+            }
+            for point in drives.operating_table(vehicle, speeds)
+        ]
+    )
+
+
+def write_tables(folder: Path, main: pd.DataFrame, beside: pd.DataFrame, points: pd.DataFrame) -> None:
+    """`summary.csv`, `summary_variants.csv` and `table1.csv`."""
+    for name, table in (("summary", main), ("summary_variants", beside), ("table1", points)):
+        text = table.to_csv(index=False, float_format="%.6g", lineterminator="\n")
+        write_whole(folder / f"{name}.csv", text.encode())
+
+
+def write_figures(folder: Path, main: pd.DataFrame, histories: Mapping[str, History]) -> dict[str, bytes]:
+    """`fig15` to `fig19` as SVG and PNG, as far as their runs exist; returns the SVG files by name."""
+    figures = {}
+    if histories:
+        one = next(iter(histories.values()))
+        figures["fig15"] = displacement_history(
+            {vehicle: history.displacement for vehicle, history in histories.items()},
+            one.wheelsets,
+            one.course,
+            caption=f"R = {1.0 / abs(one.course.curvature):.0f} m",
+        )
+    if len(main):
+        figures |= {name: per_radius(main, name) for name in FIGURES}
+    svgs = {}
+    for name, figure in figures.items():
+        svgs[name] = render(figure, "svg", name=name)
+        write_whole(folder / f"{name}.svg", svgs[name])
+        write_whole(folder / f"{name}.png", render(figure, "png", name=name))
+    return svgs
+
+
+CAPTIONS = {
+    "fig15": "Lateral displacement of the wheelsets from the track centre line. Grey: transitions, and darker the arc, "
+    "as the leading wheelset passes them. The active vehicles share one scale; the passive vehicle has its own.",
+    "fig16": "Largest lateral displacement of any wheelset, from 1 s before the curve to 3 s after it.",
+    "fig17": "Largest attack angle of any wheelset, its yaw to the local tangent of the track.",
+    "fig18": "Largest lateral force of any wheelset on the track. Dotted: the least achievable, a wheelset's share of "
+    "the vehicle's mass times the unbalanced lateral acceleration in the arc.",
+    "fig19": "Wear index, the mean over all wheels of |Fx ξ| + |Fy η| in the arc.",
+}
+"""Below the figures."""
+
+
+def write_report(
+    folder: Path,
+    *,
+    summary: pd.DataFrame,
+    variants: pd.DataFrame,
+    figures: Mapping[str, bytes],
+    points: pd.DataFrame,
+    loads: Mapping[str, Mapping[str, float]],
+    scenario: Scenario,
+    failed: Mapping[str, str],
+    runs: int,
+    history_radius: float,
+) -> None:
+    """`report.html`, one page with everything in it."""
+    vehicle = library.vehicle("mechatronic_irw")
+    assert vehicle.drive is not None
+    assert vehicle.running_resistance is not None
+    drive, resistance = vehicle.drive, vehicle.running_resistance
+    page = StudyPage(
+        summary=summary,
+        variants=variants,
+        figures=figures,
+        captions=CAPTIONS,
+        operating_points=points,
+        operating_note=(
+            f"Running resistance by the formula {resistance.formula} for {resistance.stock} stock, a train of "
+            f"{resistance.cars} such cars, shared evenly by all wheels. Field current from Eq. (5), larger root, at "
+            f"x VaMax = {drive.traction_share * drive.armature_voltage_max:.0f} V; normalised by its rated "
+            f"{drive.field_current_rated:g} A. Motors of this project's own design, see the parameters."
+        ),
+        vehicles=[library.vehicle("manchester_coach"), vehicle],
+        static_wheel_loads=loads,
+        method=_method(scenario, runs, len(summary) + len(variants)),
+        radius_of_history=history_radius,
+        version=klingel.__version__,
+        missing=failed,
+    )
+    study_report(page).save(folder / "report.html")
+
+
+def _method(scenario: Scenario, asked: int, made: int) -> dict[str, str]:
+    elements = " by ".join(str(n) for n in scenario.creep_elements)
+    return {
+        "Runs": f"{made} of {asked}",
+        "Curves": "R = 300, 500, 800, 1200, 1800 m at 108, 140, 176, 216, 265 km/h, cant 160 mm, linear ramps of "
+        "curvature and cant; R = 500 and 1200 m and the cant are inferred, they reproduce all five speeds of the paper",
+        "Track": "smooth and rigid",
+        "Profiles": f"S1002 on {scenario.rail} at 1:{1.0 / scenario.rail_inclination:.0f}, "
+        f"gauge {1e3 * scenario.gauge:.0f} mm",
+        "Contact": f"elastic, tabulated over shift and roll; creep forces by {scenario.creep_law.upper()}, "
+        f"{elements} elements, one coefficient of friction, {FRICTION:.2f} in the main runs",
+        "Integration": f"step {1e3 * scenario.step:g} ms; controllers sampled at 1 kHz; runs start from the static "
+        "equilibrium",
+        "Speed": "held by a slow ideal force on the body; the motors of the active vehicles give the torque of Table 1",
+    }
+
+
+def show(
+    console: Console,
+    main: pd.DataFrame,
+    beside: pd.DataFrame,
+    points: pd.DataFrame,
+    folder: Path,
+    elapsed: float,
+) -> None:
+    """Print Table 1 and the summaries."""
+    table = Table(
+        title="Table 1: operating points of the motors", title_justify="left", title_style="bold", box=box.SIMPLE_HEAD
+    )
+    for heading in points.columns:
+        table.add_column(str(heading), justify="right")
+    for row in points.astype(str).to_numpy().tolist():
+        table.add_row(*row)
+    console.print(table)
+    if len(main):
+        console.print(_screen(main, "Main runs, friction 0.35"))
+    for name, rows in beside.groupby("variant", sort=False):
+        console.print(_screen(rows, str(name)))
+    console.print(f"{len(main) + len(beside)} runs in {elapsed:.1f} s, written to {folder}", highlight=False)
+
+
+def _screen(rows: pd.DataFrame, title: str) -> Table:
+    table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for name in SHOWN:
+        heading = HEADINGS[name]
+        label = f"{heading.name}\n{heading.unit}" if heading.unit else heading.name
+        table.add_column(label, justify="left" if name in ("vehicle", "flange_contact", "outcome") else "right")
+    previous = None
+    for row in rows.to_dict("records"):
+        if previous not in (None, row["vehicle"]):
+            table.add_section()
+        previous = row["vehicle"]
+        table.add_row(*(cell(name, row[name]) for name in SHOWN))
+    return table
