@@ -88,8 +88,13 @@ def _parse(text: str, unit: str, example: str) -> float:
     wanted = "" if unit == "1" else unit
     if not quantity.is_compatible_with(wanted):
         raise _RefusedError(f"is {_dimension(quantity)}, wanted {unit if wanted else 'a pure number'}", example)
-    # Factors are rounded once: 1.5 mm is 0.0015 exactly as typed, not 0.0015000000000000002.
-    return float(f"{quantity.to(wanted).magnitude:.15g}")
+    return _as_typed(float(quantity.to(wanted).magnitude))
+
+
+def _as_typed(number: float) -> float:
+    """The short decimal next to `number`, if it is but a rounding away: 160 mm is 0.16 m, not 0.16000000000000003."""
+    short = float(f"{number:.12g}")
+    return short if abs(short - number) <= 2.0 * math.ulp(number) else number
 
 
 def _dimension(quantity: pint.Quantity[Any]) -> str:

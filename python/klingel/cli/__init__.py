@@ -8,6 +8,10 @@ import sys
 from klingel.errors import InputError, KlingelError, RunCancelledError
 
 
+CANCELLED = 130
+"""Exit code of a command that Ctrl-C ended, as shells have it."""
+
+
 def main() -> None:
     """Entry point of the `klingel` command."""
     sys.exit(run(sys.argv[1:]))
@@ -19,15 +23,20 @@ def run(arguments: list[str]) -> int:
 
     try:
         app(arguments, prog_name="klingel", standalone_mode=True)
-    except SystemExit as ended:
-        return ended.code if isinstance(ended.code, int) else 0 if ended.code is None else 1
+    except SystemExit as ended:  # typer turns Ctrl-C into a silent 130
+        code = ended.code if isinstance(ended.code, int) else 0 if ended.code is None else 1
+        return _cancelled() if code == CANCELLED else code
     except InputError as error:
         return _say("bad input", error, 2)
     except (KeyboardInterrupt, RunCancelledError):
-        return _say("cancelled", "finished runs are kept", 130)
+        return _cancelled()
     except KlingelError as error:
         return _say("failed", error, 1)
     return 0
+
+
+def _cancelled() -> int:
+    return _say("cancelled", "finished runs are kept", CANCELLED)
 
 
 def _say(head: str, text: object, code: int) -> int:

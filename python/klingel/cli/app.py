@@ -51,7 +51,7 @@ def perez2004(
     """Combined active steering and traction: three vehicles, five curves (Perez et al. 2004)."""
     from klingel.study import perez2004 as body
 
-    body.run(out, jobs=jobs, radii=only or None, friction_variants=variants)
+    body.run(out, jobs=jobs, radii=only or None, friction_variants=variants, database_variant=variants)
 
 
 @app.command()

@@ -24,6 +24,9 @@ STRATEGIES: dict[str, type[Any]] = {
 }
 """Names of strategies in files."""
 
+PARTS: dict[str, type[Any]] = {"timing": control.Timing, "contact": control.ContactDesign}
+"""Tables inside a strategy's table."""
+
 
 class _Curve(Record):
     """Keywords of Track.curve."""
@@ -82,14 +85,25 @@ def strategy(table: object) -> Strategy:
     if name not in STRATEGIES:
         raise InputError.single("control.strategy", name, "is not known", remedy=nearest(name, list(STRATEGIES)))
     values = {key: value for key, value in table.items() if key != "strategy"}
-    known = [field.name for field in dataclasses.fields(STRATEGIES[name])]
+    made: Strategy = _made(STRATEGIES[name], values, "control")
+    return made
+
+
+def _made(kind: type[Any], values: Mapping[str, Any], key: str) -> Any:
+    """An object of a dataclass from a table, the tables inside it likewise."""
+    known = [field.name for field in dataclasses.fields(kind)]
     problems = [
-        Problem(f"control.{k}", v, "is not a known key", nearest(k, known)) for k, v in values.items() if k not in known
+        Problem(f"{key}.{k}", v, "is not a known key", nearest(k, known)) for k, v in values.items() if k not in known
     ]
     if problems:
         raise InputError(problems)
-    made: Strategy = STRATEGIES[name](**values)
-    return made
+    inside = {k: _made(PARTS[k], v, f"{key}.{k}") for k, v in values.items() if k in PARTS and isinstance(v, Mapping)}
+    try:
+        return kind(**{**values, **inside})
+    except InputError as error:
+        raise error.within(key) from None
+    except (TypeError, ValueError) as error:
+        raise InputError.single(key, dict(values), f"is not accepted ({error})") from None
 
 
 def _vehicle(name: object, folder: Path) -> Vehicle:

@@ -1,0 +1,102 @@
+"""The command line: exit codes, one clear message, nothing half-written, Ctrl-C."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import klingel as kl
+from klingel import cli
+
+SCENARIO = """
+vehicle = "manchester_coach"
+speed = "108 km/h"
+creep_law = "polach"
+duration = "0.2 s"
+track.straight = "{length}"
+"""
+
+
+def write(folder: Path, text: str = SCENARIO, length: str = "200 m") -> Path:
+    path = folder / "my.toml"
+    path.write_text(text.replace("{length}", length))
+    return path
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.run(["--version"]) == 0
+    assert capsys.readouterr().out == f"klingel {kl.__version__}\n"
+
+
+@pytest.mark.parametrize("arguments", [["study", "nope"], ["nope"], ["study"], ["run"], ["--nope"]])
+def test_unknown_words_exit_with_2(arguments: list[str]) -> None:
+    assert cli.run(arguments) == 2
+
+
+def test_study_has_a_command_a_study(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.run(["study", "perez2004", "--help"]) == 0
+    assert "--out" in capsys.readouterr().out
+
+
+def test_vehicles(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.run(["vehicles"]) == 0
+    assert "mechatronic_irw" in capsys.readouterr().out
+    assert cli.run(["vehicles", "manchester_coach"]) == 0
+    assert "body.mass" in capsys.readouterr().out
+
+
+def test_doctor_finds_this_checkout_in_order(capsys: pytest.CaptureFixture[str]) -> None:
+    code = cli.run(["doctor"])
+    out = capsys.readouterr().out
+    assert code == 0, out
+    assert "library/manchester_coach" in out
+
+
+def test_run_saves_a_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.run(["run", str(write(tmp_path))]) == 0
+    assert "completed" in capsys.readouterr().out
+    assert kl.load(tmp_path / "my.nc").attrs["outcome"] == "completed"
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("speed", "sped"), "did you mean 'speed'?"),
+        (("108 km/h", "108 kg"), "is a mass"),
+        (("108 km/h", "0 km/h"), "must be positive"),
+        (("manchester_coach", "manchester"), "manchester_coach"),
+        (("200 m", "200 kg"), "track.straight"),
+    ],
+)
+def test_bad_input_is_one_message_and_exit_2(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], change: tuple[str, str], said: str
+) -> None:
+    path = write(tmp_path, SCENARIO.replace("{length}", "200 m").replace(*change))
+    assert cli.run(["run", str(path)]) == 2
+    message = capsys.readouterr().err
+    assert said in message
+    assert "my.toml" in message
+    assert "Traceback" not in message
+    assert [p.name for p in tmp_path.iterdir()] == ["my.toml"]
+
+
+def test_missing_scenario(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.run(["run", str(tmp_path / "none.toml")]) == 2
+    assert "no such file" in capsys.readouterr().err
+
+
+def test_ctrl_c_ends_a_run_cleanly(tmp_path: Path) -> None:
+    path = write(tmp_path, SCENARIO.replace('"0.2 s"', '"300 s"').replace("polach", "fastsim"), length="10 km")
+    command = [sys.executable, "-W", "ignore", "-c", "from klingel.cli import main; main()", "run", str(path)]
+    run = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env={**os.environ, "COLUMNS": "80"})
+    time.sleep(4.0)
+    assert run.poll() is None
+    run.send_signal(signal.SIGINT)
+    _, message = run.communicate(timeout=20.0)
+    assert run.returncode == 130
+    assert "cancelled" in message
+    assert [p.name for p in tmp_path.iterdir()] == ["my.toml"]

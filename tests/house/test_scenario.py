@@ -1,0 +1,124 @@
+"""Scenarios: keywords and files give the same, bad ones are refused with file, key, value and remedy."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from klingel import control, library
+from klingel.errors import InputError
+from klingel.scenario import Scenario
+from klingel.track import Track
+
+COACH = library.vehicle("manchester_coach")
+
+FILE = """
+vehicle = "mechatronic_irw"
+speed = "176 km/h"
+friction = 0.3
+creep_elements = [10, 12]
+
+[track.curve]
+radius = "800 m"
+cant = "160 mm"
+transition = "195 m"
+hand = "left"
+
+[control]
+strategy = "irw_like"
+curvature = "database"
+"""
+
+
+def scenario(**changes: Any) -> Scenario:
+    return Scenario(COACH, Track.straight("500 m"), **{"speed": "108 km/h", **changes})
+
+
+def read(tmp_path: Path, text: str) -> Scenario:
+    path = tmp_path / "my.toml"
+    path.write_text(text)
+    return Scenario.read(path)
+
+
+def test_file_and_keywords_agree(tmp_path: Path) -> None:
+    track = Track.curve(radius="800 m", cant="160 mm", transition="195 m", hand="left")
+    assert read(tmp_path, FILE) == Scenario(
+        library.vehicle("mechatronic_irw"),
+        track,
+        speed="176 km/h",
+        control=control.IRWLike(curvature="database"),
+        friction=0.3,
+        creep_elements=(10, 12),
+    )
+
+
+def test_other_tracks_and_a_vehicle_file(tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text(library.text("manchester_coach"))
+    text = 'vehicle = "mine.toml"\nspeed = 30\ntrack.straight = "1 km"\n'
+    assert read(tmp_path, text).track == Track.straight(1000)
+    segments = 'track.segment = [{ length = "1 km" }, { length = "50 m", curvature = [0, "1/1000 1/m"] }]\n'
+    track = read(tmp_path, text.replace('track.straight = "1 km"\n', segments)).track
+    assert track.segments[1].curvature == (0.0, 1e-3)
+
+
+def test_runs_from_end_to_end_of_the_track() -> None:
+    made = scenario()
+    assert made.start == pytest.approx(12.78)
+    assert made.start + made.end_time * made.speed == pytest.approx(500 - 12.78)
+    assert made.replace(duration="2 s").end_time == 2.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"speed": 0}, "speed = 0.0: must be positive"),
+        ({"speed": "-3 m/s"}, "speed = -3.0: must be positive"),
+        ({"speed": "30 m"}, "speed = '30 m': is a length"),
+        ({"friction": -0.1}, "friction = -0.1: must be positive"),
+        ({"friction": 35}, "no coefficient of friction"),
+        ({"creep_law": "fastsin"}, "did you mean 'fastsim'"),
+        ({"creep_elements": (16, 1)}, "is no grid"),
+        ({"creep_elements": (16, 16, 16)}, "is no grid"),
+        ({"rail": "60E2"}, "did you mean '60E1'"),
+        ({"rail_inclination": 20}, "too steep"),
+        ({"gauge": "1435 kg"}, "is a mass"),
+        ({"step": 0}, "step = 0.0: must be positive"),
+        ({"record_interval": "0.7 ms"}, "no multiple of the step"),
+        ({"duration": "60 s"}, "runs over the end"),
+    ],
+)
+def test_bad_keywords(changes: dict[str, Any], said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        scenario(**changes)
+    assert said in str(refused.value)
+
+
+def test_track_shorter_than_the_vehicle() -> None:
+    with pytest.raises(InputError, match="too short for the vehicle"):
+        Scenario(COACH, Track.straight("20 m"), speed=30)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("speed =", "sped =", "sped = '176 km/h': is not a known key; did you mean 'speed'?"),
+        ('"mechatronic_irw"', '"mechatronic_iwr"', "did you mean 'mechatronic_irw'?"),
+        ('"mechatronic_irw"', '"none.toml"', "none.toml: no such file"),
+        ('"mechatronic_irw"', "3", "vehicle = 3: is no name or path"),
+        ('radius = "800 m"', 'radius = "800 kg"', "track.curve.radius = '800 kg': is a mass"),
+        ('radius = "800 m"', 'radius = "100 m"', "curve is too tight"),
+        ('radius = "800 m"', "", "track.curve.radius: is missing"),
+        ("[track.curve]", "[track.curv]", "did you mean 'curve'?"),
+        ('"irw_like"', '"irw_lik"', "did you mean 'irw_like'?"),
+        ("curvature =", "curvatur =", "control.curvatur = 'database': is not a known key; did you mean 'curvature'?"),
+        ('strategy = "irw_like"', "", "needs a strategy"),
+        ("friction = 0.3", "friction = [", "is not TOML"),
+    ],
+)
+def test_bad_files(tmp_path: Path, old: str, new: str, said: str) -> None:
+    assert old in FILE
+    with pytest.raises(InputError) as refused:
+        read(tmp_path, FILE.replace(old, new))
+    text = str(refused.value)
+    assert said in text
+    assert "my.toml" in text or "none.toml" in text
