@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 import klingel.report
-from klingel import library
+from klingel import control, library
 from klingel.assess import COLUMNS, curving
 from klingel.plot import per_radius, render
 from klingel.report import StudyPage, study_report
@@ -58,6 +58,7 @@ def page(table, **changes):
         "operating_points": pd.DataFrame([{"speed [km/h]": "108", "torque per wheel [N m]": "97.3"}]),
         "operating_note": "Running resistance of a stated formula.",
         "vehicles": [library.vehicle("manchester_coach"), library.vehicle("mechatronic_irw")],
+        "strategies": {"S": control.SolidLike(), "I": control.IRWLike()},
         "static_wheel_loads": {"passive": {"bogie1.wheelset1.left": 54546.0, "bogie1.wheelset1.right": 54545.0}},
         "method": {"Track": "smooth and rigid"},
         "radius_of_history": 800.0,
@@ -109,6 +110,7 @@ def test_report_has_all_its_parts(html):
     assert "54.55" in html
     assert "31.391" in html or "3.1391e+07" in html
     assert "Iwnicki1998" in html
+    assert "hunting" in html  # the reason of a gain
     assert "friction 0.25" in html
 
 

@@ -16,6 +16,7 @@ from klingel.assess import COLUMNS, Assessment
 from klingel.report.claims import paper_claims
 from klingel.report.columns import HEADINGS, cell
 from klingel.report.files import write_whole
+from klingel.report.parameters import strategy_rows, vehicle_rows
 from klingel.report.summary import Summary
 from klingel.report.targets import targets
 
@@ -65,6 +66,7 @@ class StudyPage:
         operating_points: Table 1, one row a speed; headings carry the units.
         operating_note: the formula and constants behind Table 1.
         vehicles: whose parameters are listed.
+        strategies: name to the strategy whose settings are listed.
         static_wheel_loads: vehicle to wheel to load at rest [N].
         method: name of a setting to its value, in words.
         radius_of_history: radius of the curve that Fig. 15 shows [m].
@@ -79,6 +81,7 @@ class StudyPage:
     operating_points: pd.DataFrame
     operating_note: str
     vehicles: Sequence[Vehicle]
+    strategies: Mapping[str, Any]
     static_wheel_loads: Mapping[str, Mapping[str, float]]
     method: Mapping[str, str]
     radius_of_history: float
@@ -111,18 +114,22 @@ def study_report(page: StudyPage) -> Report:
         The page; the same input gives the same page.
     """
     summary = Summary(page.summary)
+    claims = paper_claims(summary, page.radius_of_history) if len(page.summary) else []
     active = [vehicle for vehicle in page.vehicles if vehicle.drive is not None and vehicle.steering is not None]
     return Report(
         _template("study.html").render(
             page=page,
-            claims=paper_claims(summary, page.radius_of_history) if len(page.summary) else [],
+            claims=claims,
+            differing=[c for c in claims if c.verdict in ("differs", "agrees in part")],
+            agreeing=[c for c in claims if c.verdict == "agrees"],
             targets=targets(summary, active[0]) if len(page.summary) and active else [],
             headings=HEADINGS,
             summary_rows=_cells(page.summary, COLUMNS),
             variant_tables=_variant_tables(page.variants),
             figures={name: inline_svg(svg, name) for name, svg in page.figures.items()},
             points=[list(page.operating_points.columns), *page.operating_points.astype(str).to_numpy().tolist()],
-            parameters={vehicle.name: _parameters(vehicle) for vehicle in page.vehicles},
+            parameters={vehicle.name: vehicle_rows(vehicle) for vehicle in page.vehicles},
+            strategies={name: strategy_rows(strategy) for name, strategy in page.strategies.items()},
             loads=_loads(page.static_wheel_loads),
         )
     )
@@ -172,26 +179,6 @@ def _variant_tables(variants: pd.DataFrame) -> list[dict[str, Any]]:
     return [
         {"name": str(name), "rows": _cells(rows, COLUMNS)} for name, rows in variants.groupby("variant", sort=False)
     ]
-
-
-def _parameters(vehicle: Vehicle) -> list[dict[str, str]]:
-    return [
-        {
-            "key": parameter.key,
-            "value": _number(parameter.value),
-            "unit": "" if parameter.unit in ("1", "dimensionless") else parameter.unit,
-            "status": parameter.status,
-            "source": ", ".join(parameter.source),
-            "note": parameter.note,
-        }
-        for parameter in vehicle.parameters()
-    ]
-
-
-def _number(value: Any) -> str:
-    if isinstance(value, (tuple, list)):
-        return ", ".join(_number(item) for item in value)
-    return f"{value:.6g}" if isinstance(value, (int, float)) else str(value)
 
 
 def _loads(static_wheel_loads: Mapping[str, Mapping[str, float]]) -> list[dict[str, Any]]:

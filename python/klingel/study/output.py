@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.table import Table
 
 import klingel
-from klingel import drives, library
+from klingel import control, drives, library
 from klingel.assess import COLUMNS, Assessment
 from klingel.plot import FIGURES, displacement_history, per_radius, render
 from klingel.report.columns import HEADINGS, cell
@@ -143,6 +143,7 @@ def write_report(
             f"{drive.field_current_rated:g} A. Motors of this project's own design, see the parameters."
         ),
         vehicles=[library.vehicle("manchester_coach"), vehicle],
+        strategies={"Solid-wheelset-like (S)": control.SolidLike(), "IRW-like (I)": control.IRWLike()},
         static_wheel_loads=loads,
         method=_method(scenario, runs, len(summary) + len(variants)),
         radius_of_history=history_radius,
