@@ -8,8 +8,8 @@ import pytest
 from klingel.contact import Profile, shapes
 from klingel.errors import InputError
 
-# Points of public files: S1002 of the MBench example of CONTACT (Apache-2.0), 60E1 by its arcs (rounded to 1e-5 mm where the
-# flank has a slope of 20); millimetres.
+# Points of public files, millimetres: S1002 of CONTACT's MBench example (Apache-2.0); the arcs of 60E1, which are
+# rounded to 1e-5 mm where the flank has a slope of 20.
 S1002_POINTS = {-55.0: 28.0, 0.0: 0.0, -69.9: 11.54163, 60.0: -2.63564}
 RAIL_POINTS = {0.0: 0.0, 10.228: 0.17440, 26.0265: 2.30252, 35.99981: 14.29996}
 

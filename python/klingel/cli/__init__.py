@@ -7,7 +7,6 @@ import sys
 
 from klingel.errors import InputError, KlingelError, RunCancelledError
 
-
 CANCELLED = 130
 """Exit code of a command that Ctrl-C ended, as shells have it."""
 
