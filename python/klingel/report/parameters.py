@@ -90,8 +90,8 @@ def documented_fields(docstring: str, names: Iterable[str]) -> dict[str, str]:
     for paragraph in docstring.split("\n\n"):
         text = " ".join(paragraph.split())
         found = list(entry.finditer(text))
-        ends = [match.start() for match in found[1:]] + [len(text)]
-        for match, end in zip(found, ends, strict=True):
+        starts = [*(match.start() for match in found), len(text)]
+        for match, end in zip(found, starts[1:], strict=True):
             meanings |= dict.fromkeys(match.group(1).split(", "), text[match.end() : end].strip().rstrip(".;"))
     return meanings
 
