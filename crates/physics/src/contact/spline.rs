@@ -47,8 +47,9 @@ fn rows<const W: usize>(nodes: &[f64], first: usize, stride: usize, step: usize,
         for j in 0..3 {
             let start = first + i * stride + j * step;
             let w = u[i] * v[j];
-            for (s, c) in sum.iter_mut().zip(&nodes[start..start + W]) {
-                *s += w * c;
+            let row = &nodes[start..start + W];
+            for k in 0..W {
+                sum[k] += w * row[k];
             }
         }
     }
@@ -76,7 +77,7 @@ pub(super) fn plane_slopes<const K: usize>(nodes: &[f64], axes: &[Axis; 2], x: [
 /// Six values over three axes, the last one fastest.
 #[inline]
 pub(super) fn space(nodes: &[f64], axes: &[Axis; 3], x: [f64; 3]) -> [f64; 6] {
-    let [u, v, t] = [0, 1, 2].map(|i| axes[i].stencil(x[i]));
+    let (u, v, t) = (axes[0].stencil(x[0]), axes[1].stencil(x[1]), axes[2].stencil(x[2]));
     let (step, stride) = (axes[2].len * 6, axes[1].len * axes[2].len * 6);
     let line = rows(nodes, u.first * stride + v.first * step + t.first * 6, stride, step, &u.weight, &v.weight);
     along(&line, &t.weight)
@@ -84,7 +85,7 @@ pub(super) fn space(nodes: &[f64], axes: &[Axis; 3], x: [f64; 3]) -> [f64; 6] {
 
 /// The values of `space`, bitwise, and their Jacobian.
 pub(super) fn space_slopes(nodes: &[f64], axes: &[Axis; 3], x: [f64; 3]) -> ([f64; 6], [[f64; 3]; 6]) {
-    let [u, v, t] = [0, 1, 2].map(|i| axes[i].stencil(x[i]));
+    let (u, v, t) = (axes[0].stencil(x[0]), axes[1].stencil(x[1]), axes[2].stencil(x[2]));
     let (step, stride) = (axes[2].len * 6, axes[1].len * axes[2].len * 6);
     let first = u.first * stride + v.first * step + t.first * 6;
     let sum = |u_weight, v_weight| rows(nodes, first, stride, step, u_weight, v_weight);
@@ -96,7 +97,11 @@ pub(super) fn space_slopes(nodes: &[f64], axes: &[Axis; 3], x: [f64; 3]) -> ([f6
 
 #[inline(always)]
 fn along(line: &[f64; 18], w: &[f64; 3]) -> [f64; 6] {
-    core::array::from_fn(|k| w[0] * line[k] + w[1] * line[6 + k] + w[2] * line[12 + k])
+    let mut sum = [0.0; 6];
+    for (k, s) in sum.iter_mut().enumerate() {
+        *s = w[0] * line[k] + w[1] * line[6 + k] + w[2] * line[12 + k];
+    }
+    sum
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Kalker's simplified theory FASTSIM: three flexibilities, parabolic traction bound, one friction coefficient.
-//! Strips run along the rolling direction from the leading edge; four of them go side by side through the same law.
+//! All strips advance side by side from their leading edges, so the compiler runs four of them at a time.
 
 use super::{Kalker, RollingContact};
-use crate::{Lanes, Mask, Scalar};
+use crate::{Mask, Scalar};
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// Most strips and most elements a strip.
@@ -13,120 +13,183 @@ pub const MOST_ELEMENTS: usize = 40;
 pub(super) struct Grid {
     nx: usize,
     ny: usize,
-    /// Middle of each strip, and half its length; mirrored bitwise, padded with the last strip to a multiple of four.
-    y: Vec<f64>,
-    half: Vec<f64>,
+    /// Middle of each strip and half its length; mirrored bitwise, filled up to a multiple of four strips.
+    y: Vec<[f64; 4]>,
+    half: Vec<[f64; 4]>,
     /// Exact over discrete volume of the traction bound, so that full slip gives mu N.
     bound: f64,
 }
 
 impl Grid {
     pub fn new(nx: usize, ny: usize) -> Self {
-        let y: Vec<f64> =
-            (0..ny.next_multiple_of(4)).map(|j| (2.0 * j.min(ny - 1) as f64 + 1.0 - ny as f64) / ny as f64).collect();
-        let half: Vec<f64> = y.iter().map(|y| (1.0 - y * y).sqrt()).collect();
+        let middle = |j: usize| (2.0 * j.min(ny - 1) as f64 + 1.0 - ny as f64) / ny as f64;
+        let y: Vec<[f64; 4]> = (0..ny.div_ceil(4)).map(|g| [0, 1, 2, 3].map(|l| middle(4 * g + l))).collect();
+        let half: Vec<[f64; 4]> = y.iter().map(|y| y.map(|y| (1.0 - y * y).sqrt())).collect();
         // Midpoint sum of (l^2 - x^2) over a strip: 4/3 l^3 (1 + 1/(2 nx^2)).
         let strip = 4.0 / 3.0 * (1.0 + 0.5 / (nx * nx) as f64);
-        let volume: f64 = half[..ny].iter().map(|l| strip * l.powi(3)).sum::<f64>() * 2.0 / ny as f64;
+        let volume: f64 = half.iter().flatten().take(ny).map(|l| strip * l.powi(3)).sum::<f64>() * 2.0 / ny as f64;
         Self { nx, ny, y, half, bound: FRAC_PI_2 / volume }
     }
 }
 
-/// What is the same for every strip: rigid slips over flexibilities times a (Pa), bound (Pa).
+/// Rigid slips over flexibilities times a, and the traction bound of the middle of the patch, Pa.
 #[derive(Clone, Copy)]
-struct Strip<T> {
-    slip_x: T,
-    slip_y: T,
-    spin_x: T,
-    spin_y: T,
+pub(super) struct Slip<T> {
+    xi: T,
+    eta: T,
+    phi_y: T,
+    phi_x: T,
     bound: T,
 }
 
-impl<T: Scalar> Strip<T> {
-    /// Sums of px, py and x py over one strip in units of the patch, and y px to be taken off.
+/// Four strips side by side: steps of traction an element, bound, tractions, and sums of px, py and x py.
+#[derive(Clone, Copy, Default)]
+#[repr(align(32))]
+struct Four<T> {
+    step_x: [T; 4],
+    step_y: [T; 4],
+    spin: [T; 4],
+    bound: [T; 4],
+    px: [T; 4],
+    py: [T; 4],
+    sum: [[T; 4]; 3],
+}
+
+impl<T: Scalar> Four<T> {
     #[inline(always)]
-    fn run(&self, nx: usize, y: T, half: T) -> [T; 3] {
-        let dx = half * (2.0 / nx as f64);
-        let half2 = half.square();
-        let rigid_x = (self.slip_x - self.spin_x * y) * dx;
-        let (slip_y, spin_y) = (self.slip_y * dx, self.spin_y * dx);
-        let (mut px, mut py) = (T::zero(), T::zero());
-        let mut sum = [T::zero(); 3];
-        // The first element's middle is half a step from the leading edge.
-        px = px - rigid_x * 0.5;
-        py = py - (slip_y + spin_y * (half - dx * 0.25)) * 0.5;
-        for i in 0..nx {
-            let x = half - dx * (i as f64 + 0.5);
-            let bound = self.bound * (half2 - x.square());
-            let size2 = px.square() + py.square();
-            let slipping = bound.square().lt(size2);
-            if !slipping.none() {
-                let scale = T::select(slipping, bound / size2.sqrt(), T::one());
-                px = px * scale;
-                py = py * scale;
-            }
-            sum[0] += px;
-            sum[1] += py;
-            sum[2] += x * py;
-            px = px - rigid_x;
-            py = py - (slip_y + spin_y * (x - dx * 0.5));
+    fn new(nx: f64, y: &[f64; 4], half: &[f64; 4], slip: &Slip<T>) -> Self {
+        let mut s = Self::default();
+        for l in 0..4 {
+            let dx = half[l] * 2.0 / nx;
+            s.step_x[l] = (slip.xi - slip.phi_y * y[l]) * dx;
+            s.step_y[l] = slip.eta * dx;
+            s.spin[l] = slip.phi_x * (half[l] * dx);
+            s.bound[l] = slip.bound * (half[l] * half[l]);
+            // The middle of the first element is half a step from the leading edge.
+            s.px[l] = -(s.step_x[l] * 0.5);
+            s.py[l] = -((s.step_y[l] + s.spin[l] * (1.0 - 0.5 / nx)) * 0.5);
         }
-        [sum[0] * dx, sum[1] * dx, sum[2] * dx]
+        s
+    }
+
+    /// Takes the element whose middle is at `x` (in half lengths of the strip) and goes on to the next one.
+    #[inline(always)]
+    fn element(&mut self, nx: f64, x: f64) {
+        let (mut size2, mut limit, mut slipping) = ([T::zero(); 4], [T::zero(); 4], false);
+        for l in 0..4 {
+            size2[l] = self.px[l].square() + self.py[l].square();
+            limit[l] = self.bound[l] * (1.0 - x * x);
+        }
+        for l in 0..4 {
+            slipping |= !limit[l].square().lt(size2[l]).none();
+        }
+        if slipping {
+            for l in 0..4 {
+                let scale = T::select(limit[l].square().lt(size2[l]), limit[l] / size2[l].sqrt(), T::one());
+                self.px[l] = self.px[l] * scale;
+                self.py[l] = self.py[l] * scale;
+            }
+        }
+        for l in 0..4 {
+            self.sum[0][l] += self.px[l];
+            self.sum[1][l] += self.py[l];
+            self.sum[2][l] += self.py[l] * x;
+            self.px[l] -= self.step_x[l];
+            self.py[l] -= self.step_y[l] + self.spin[l] * (x - 1.0 / nx);
+        }
     }
 }
 
-/// Runs all strips; how is up to the number: four strips a time in f64, one a time with derivatives.
-pub(super) trait RunStrips: Scalar {
-    fn run_strips(strip: [Self; 5], grid: &Grid, out: &mut [[Self; 3]; MOST_ELEMENTS]);
+/// Sums of px, py, x py and y px over the unit circle.
+type Sums<T> = [T; 4];
+
+/// Advances all strips, in at most `G` fours, from the leading to the trailing edge and sums them up.
+#[inline(always)]
+fn advance<T: Scalar, const G: usize>(grid: &Grid, slip: &Slip<T>) -> Sums<T> {
+    let nx = grid.nx as f64;
+    let mut fours = [Four::default(); G];
+    let fours = &mut fours[..grid.y.len()];
+    for (f, (y, half)) in fours.iter_mut().zip(grid.y.iter().zip(&grid.half)) {
+        *f = Four::new(nx, y, half, slip);
+    }
+    for i in 0..grid.nx {
+        let x = 1.0 - (2 * i + 1) as f64 / nx;
+        for f in fours.iter_mut() {
+            f.element(nx, x);
+        }
+    }
+    let strip = |j: usize| {
+        let (f, l) = (&fours[j / 4], j % 4);
+        let half = grid.half[j / 4][l];
+        let dx = half * 2.0 / nx;
+        [f.sum[0][l] * dx, f.sum[1][l] * dx, f.sum[2][l] * (half * dx)]
+    };
+    // In pairs from the edges inwards, so that a mirrored contact gives the mirrored force bitwise.
+    let mut sums = [T::zero(); 4];
+    for j in 0..grid.ny / 2 {
+        let ([xj, yj, mj], [xk, yk, mk]) = (strip(j), strip(grid.ny - 1 - j));
+        sums[0] += xj + xk;
+        sums[1] += yj + yk;
+        sums[2] += mj + mk;
+        sums[3] += (xj - xk) * grid.y[j / 4][j % 4];
+    }
+    if grid.ny % 2 == 1 {
+        let [x, y, m] = strip(grid.ny / 2);
+        sums[0] += x;
+        sums[1] += y;
+        sums[2] += m;
+    }
+    sums
 }
 
-fn strip_of<T>([slip_x, slip_y, spin_x, spin_y, bound]: [T; 5]) -> Strip<T> {
-    Strip { slip_x, slip_y, spin_x, spin_y, bound }
+/// Grids of up to sixteen strips, the usual ones, need less room.
+#[inline(always)]
+fn advance_any<T: Scalar>(grid: &Grid, slip: &Slip<T>) -> Sums<T> {
+    if grid.y.len() <= 4 { advance::<T, 4>(grid, slip) } else { advance::<T, { MOST_ELEMENTS / 4 }>(grid, slip) }
 }
 
-impl RunStrips for f64 {
+/// Numbers that FASTSIM runs on.
+pub(super) trait Strip: Scalar {
+    fn strips(grid: &Grid, slip: &Slip<Self>) -> Sums<Self>;
+}
+
+impl Strip for f64 {
     #[inline]
-    fn run_strips(strip: [f64; 5], grid: &Grid, out: &mut [[f64; 3]; MOST_ELEMENTS]) {
-        let strip = strip_of(strip.map(Lanes::constant));
-        for (first, (y, half)) in grid.y.chunks_exact(4).zip(grid.half.chunks_exact(4)).enumerate() {
-            let four = |v: &[f64]| Lanes::from([v[0], v[1], v[2], v[3]]);
-            let sums = strip.run(grid.nx, four(y), four(half)).map(Lanes::to_array);
-            for (l, out) in out[4 * first..4 * first + 4].iter_mut().enumerate() {
-                *out = [sums[0][l], sums[1][l], sums[2][l]];
+    fn strips(grid: &Grid, slip: &Slip<f64>) -> Sums<f64> {
+        #[cfg(target_arch = "x86_64")]
+        {
+            /// The same operations for wider registers; without fused operations the result is the same bitwise.
+            #[target_feature(enable = "avx2")]
+            fn wide(grid: &Grid, slip: &Slip<f64>) -> Sums<f64> {
+                advance_any(grid, slip)
+            }
+            if std::arch::is_x86_feature_detected!("avx2") {
+                // SAFETY: the feature was just found.
+                return unsafe { wide(grid, slip) };
             }
         }
+        advance_any(grid, slip)
     }
 }
 
-impl<const N: usize> RunStrips for crate::Dual<N> {
-    fn run_strips(strip: [Self; 5], grid: &Grid, out: &mut [[Self; 3]; MOST_ELEMENTS]) {
-        let strip = strip_of(strip);
-        for (j, out) in out.iter_mut().enumerate().take(grid.ny) {
-            *out = strip.run(grid.nx, Self::constant(grid.y[j]), Self::constant(grid.half[j]));
-        }
+impl<const N: usize> Strip for crate::Dual<N> {
+    fn strips(grid: &Grid, slip: &Slip<Self>) -> Sums<Self> {
+        advance_any(grid, slip)
     }
 }
 
-pub(super) fn fastsim<S: RunStrips>(kalker: &Kalker, shear_modulus: f64, grid: &Grid, c: &RollingContact<S>) -> [S; 3] {
+pub(super) fn fastsim<S: Strip>(kalker: &Kalker, shear_modulus: f64, grid: &Grid, c: &RollingContact<S>) -> [S; 3] {
     let [c11, c22, c23, _] = kalker.at(c.a / c.b);
     // a / L with L1 = 8 a / (3 G C11), L2 = 8 a / (3 G C22), L3 = pi a sqrt(a/b) / (4 G C23).
-    let inverse = [c11 * (0.375 * shear_modulus), c22 * (0.375 * shear_modulus)];
-    let spin = c23 * (4.0 / PI * shear_modulus) * c.phi / (c.a / c.b).sqrt();
-    let peak = c.friction * c.normal_force * (2.0 / PI * grid.bound) / (c.a * c.b);
-    let mut strips = [[S::zero(); 3]; MOST_ELEMENTS];
-    S::run_strips([inverse[0] * c.xi, inverse[1] * c.eta, spin * c.b, spin * c.a, peak], grid, &mut strips);
-    // Summed in pairs from the edges inwards, so that a mirrored contact gives the mirrored force bitwise.
-    let (mut fx, mut fy, mut mz) = (S::zero(), S::zero(), S::zero());
-    for j in 0..grid.ny.div_ceil(2) {
-        let k = grid.ny - 1 - j;
-        let ([xj, yj, mj], [xk, yk, mk]) = (strips[j], strips[k]);
-        if j == k {
-            (fx, fy, mz) = (fx + xj, fy + yj, mz + c.a * mj);
-        } else {
-            (fx, fy) = (fx + (xj + xk), fy + (yj + yk));
-            mz += c.a * (mj + mk) + c.b * (xj - xk) * -grid.y[j];
-        }
-    }
+    let spin = c23 * c.phi * (4.0 / PI * shear_modulus) / (c.a / c.b).sqrt();
+    let slip = Slip {
+        xi: c11 * c.xi * (0.375 * shear_modulus),
+        eta: c22 * c.eta * (0.375 * shear_modulus),
+        phi_y: spin * c.b,
+        phi_x: spin * c.a,
+        bound: c.friction * c.normal_force * (2.0 / PI * grid.bound) / (c.a * c.b),
+    };
+    let [fx, fy, along, across] = S::strips(grid, &slip);
     let element = c.a * c.b * (2.0 / grid.ny as f64);
-    [fx * element, fy * element, mz * element]
+    [fx * element, fy * element, (c.a * along - c.b * across) * element]
 }

@@ -11,7 +11,7 @@ pub use kalker::Kalker;
 
 use super::{ContactError, Material};
 use crate::{Dual, Scalar};
-use fastsim::{Grid, RunStrips};
+use fastsim::{Grid, Strip};
 
 /// How creep forces are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,7 +97,7 @@ impl CreepForce {
         )
     }
 
-    fn evaluate<T: RunStrips>(&self, [a, b, normal_force, friction, xi, eta, phi]: [T; 7]) -> [T; 3] {
+    fn evaluate<T: Strip>(&self, [a, b, normal_force, friction, xi, eta, phi]: [T; 7]) -> [T; 3] {
         let c = RollingContact { a, b, normal_force, friction, xi, eta, phi };
         match self.law {
             CreepLaw::Linear => linear::linear(&self.kalker, self.shear_modulus, &c),
