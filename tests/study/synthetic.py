@@ -60,6 +60,7 @@ def run(
     friction: float = 0.35,
     active: bool = False,
     duration: float = 22.0,
+    interval: float = 1e-3,
     outcome: str = "completed",
 ) -> xr.Dataset:
     """A quiet run at constant speed with some channels replaced.
@@ -67,7 +68,7 @@ def run(
     Args:
         channels: dotted name to a constant or to a function of the time the body's reference is at [s].
     """
-    time = np.arange(0.0, duration, 1e-3)
+    time = np.arange(0.0, duration, interval)
     quiet: dict[str, Shape] = {"body.s": lambda t: speed * t, "body.speed": speed, "body.y": 0.0, "body.roll": 0.0}
     quiet["body.lateral_acceleration"] = 0.0
     for name, offset in zip(WHEELSETS, OFFSETS, strict=True):

@@ -4,8 +4,10 @@ Missing runs answer NaN, so that a report of an interrupted study can still be w
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,6 +28,10 @@ class Summary:
 
     table: pd.DataFrame
 
+    @cached_property
+    def _rows(self) -> dict[tuple[str, float], dict[Hashable, Any]]:
+        return {(row["vehicle"], float(row["radius_m"])): row for row in self.table.to_dict("records")}
+
     @property
     def radii(self) -> list[float]:
         """Radii of the curves, sharpest first [m]."""
@@ -33,13 +39,13 @@ class Summary:
 
     def value(self, vehicle: str, radius: float, column: str) -> float:
         """One figure of one run, NaN if that run is missing."""
-        rows = self.table[(self.table["vehicle"] == vehicle) & (self.table["radius_m"] == radius)]
-        return float(rows[column].iloc[0]) if len(rows) else math.nan
+        row = self._rows.get((vehicle, radius))
+        return math.nan if row is None else float(row[column])
 
     def text(self, vehicle: str, radius: float, column: str) -> str:
         """One word of one run, empty if that run is missing."""
-        rows = self.table[(self.table["vehicle"] == vehicle) & (self.table["radius_m"] == radius)]
-        return str(rows[column].iloc[0]) if len(rows) else ""
+        row = self._rows.get((vehicle, radius))
+        return "" if row is None else str(row[column])
 
     def over_radii(self, vehicle: str, column: str) -> np.ndarray:
         """One figure of one vehicle in every curve, sharpest first."""
