@@ -1,7 +1,7 @@
 //! What can go wrong in the engine: bad specs (errors) and ends of motion (faults, which are outcomes).
 
 use crate::control::ControlError;
-use klingel_physics::contact::ContactError;
+use klingel_physics::contact::{ContactError, OutsideTable};
 use klingel_physics::elements::StopError;
 use klingel_physics::track::AlignmentError;
 use thiserror::Error;
@@ -32,11 +32,30 @@ pub enum EngineError {
     Cancelled { time: f64 },
 }
 
+impl Fault {
+    /// What it means that a wheel is outside its contact table.
+    pub(crate) fn outside_table(wheel: &str, outside: OutsideTable) -> Self {
+        let OutsideTable { what, value, least, most } = outside;
+        let wheel = wheel.to_string();
+        if !value.is_finite() {
+            Self::Unstable { state: format!("{wheel} ({what})") }
+        } else if what == "penetration" {
+            Self::Overloaded { wheel, value, most }
+        } else {
+            Self::Derailed { wheel, what, value, least, most }
+        }
+    }
+}
+
 /// Why a motion ended before its time. Values, not exceptions: a batch goes on.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Fault {
-    #[error("derailed: {wheel} left the range of its contact table (lateral shift {shift_mm:.1} mm)")]
-    Derailed { wheel: String, shift_mm: f64 },
+    #[error("derailed: {wheel} has left its rail ({what} {value:.4}, the contact reaches from {least} to {most})")]
+    Derailed { wheel: String, what: &'static str, value: f64, least: f64, most: f64 },
+    #[error(
+        "overloaded: {wheel} is pressed {value:.2e} m into its rail, the contact reaches to {most} m; check loads and step"
+    )]
+    Overloaded { wheel: String, value: f64, most: f64 },
     #[error("unstable: state {state} is no longer finite")]
     Unstable { state: String },
     #[error("controller failed: {0}")]

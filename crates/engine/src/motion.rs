@@ -84,15 +84,15 @@ pub fn motion<S: Scalar>(track: &Alignment, body: &Body, x: &[S], dx: &mut [S]) 
     let w_track_T = turn * arc_rate;
 
     let R_WT = frame.rotation();
-    let R_TF = Rotation::yaw_roll_pitch(q.yaw, q.roll, S::zero());
+    let R_TF = Rotation::yaw_roll(q.yaw, q.roll);
     let (sin_roll, cos_roll) = (R_TF.0[2][1], R_TF.0[2][2]);
     let w_track_F = R_TF.back(w_track_T);
 
     let (R_TB, w_B, w_F, rotation_rates);
     if body.pitches {
-        R_TB = Rotation::yaw_roll_pitch(q.yaw, q.roll, q.pitch);
-        w_B = q.w;
         let (sin, cos) = q.pitch.sin_cos();
+        R_TB = R_TF.pitched((sin, cos));
+        w_B = q.w;
         w_F = Vec3::new(cos * w_B.x() + sin * w_B.z(), w_B.y(), cos * w_B.z() - sin * w_B.x());
         let relative = w_F - w_track_F;
         let yaw_rate = relative.z() / cos_roll;

@@ -67,10 +67,8 @@ fn wheel_on_rail<S: Scalar>(
     let depth = p_T.z() + body.cos_roll * wheel.radius;
     let roll = body.sin_roll * sign;
     let yaw = body.yaw * sign;
-    let patches = wheel
-        .table
-        .patches(shift, depth, roll, yaw)
-        .map_err(|_| Fault::Derailed { wheel: wheel.name.clone(), shift_mm: 1e3 * shift.value() })?;
+    let patches =
+        wheel.table.patches(shift, depth, roll, yaw).map_err(|outside| Fault::outside_table(&wheel.name, outside))?;
 
     let w_F = Vec3::new(body.w_F.x(), -spin, body.w_F.z());
     let mean_speed = (v_T.x() + spin * wheel.radius) * 0.5;

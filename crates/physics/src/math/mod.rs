@@ -97,15 +97,21 @@ impl<S: Scalar> SubAssign for Vec3<S> {
 pub struct Rotation<S>(pub [[S; 3]; 3]);
 
 impl<S: Scalar> Rotation<S> {
+    /// Rz(yaw) Rx(roll).
+    #[inline(always)]
+    pub fn yaw_roll(yaw: S, roll: S) -> Self {
+        let ((sz, cz), (sx, cx)) = (yaw.sin_cos(), roll.sin_cos());
+        Self([[cz, -(sz * cx), sz * sx], [sz, cz * cx, -(cz * sx)], [S::zero(), sx, cx]])
+    }
     /// Rz(yaw) Rx(roll) Ry(pitch): pitch last, so that a spinning wheelset may leave it out.
     #[inline(always)]
     pub fn yaw_roll_pitch(yaw: S, roll: S, pitch: S) -> Self {
-        let ((sz, cz), (sx, cx), (sy, cy)) = (yaw.sin_cos(), roll.sin_cos(), pitch.sin_cos());
-        Self([
-            [cz * cy - sz * sx * sy, -(sz * cx), cz * sy + sz * sx * cy],
-            [sz * cy + cz * sx * sy, cz * cx, sz * sy - cz * sx * cy],
-            [-(cx * sy), sx, cx * cy],
-        ])
+        Self::yaw_roll(yaw, roll).pitched(pitch.sin_cos())
+    }
+    /// This rotation followed by Ry, given by the sine and cosine of the pitch.
+    #[inline(always)]
+    pub fn pitched(&self, (sin, cos): (S, S)) -> Self {
+        Self(self.0.map(|[x, y, z]| [x * cos - z * sin, y, x * sin + z * cos]))
     }
     #[inline(always)]
     pub fn apply(&self, v: Vec3<S>) -> Vec3<S> {

@@ -28,6 +28,10 @@ pub enum AlignmentError {
 struct Node {
     x: f64,
     y: f64,
+    /// Tangent and curvature there.
+    sin: f64,
+    cos: f64,
+    curvature: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -69,7 +73,7 @@ pub struct TrackFrame<S> {
 impl<S: Scalar> TrackFrame<S> {
     /// R_WT: resolves in the world what was resolved in the track frame.
     pub fn rotation(&self) -> Rotation<S> {
-        Rotation::yaw_roll_pitch(self.heading, self.cant_angle, S::zero())
+        Rotation::yaw_roll(self.heading, self.cant_angle)
     }
     /// Turn of the frame per metre of arc, resolved in the frame \[rad/m\]: (phi', rho sin phi, rho cos phi).
     pub fn turn(&self) -> Vec3<S> {
@@ -91,7 +95,7 @@ impl Alignment {
         if segments.is_empty() {
             return Err(AlignmentError::Empty);
         }
-        let (mut pieces, mut start, mut heading, mut at) = (Vec::new(), 0.0, 0.0, Node { x: 0.0, y: 0.0 });
+        let (mut pieces, mut start, mut heading, mut at) = (Vec::new(), 0.0, 0.0, (0.0, 0.0));
         for (index, &segment) in segments.iter().enumerate() {
             let length = segment.length;
             if !(length > 0.0 && length.is_finite()) {
@@ -105,11 +109,12 @@ impl Alignment {
             }
             let count = (length / SPACING).ceil().max(1.0);
             let spacing = length / count;
-            let mut piece = Piece { start, segment, heading, nodes: vec![at], spacing };
+            let mut piece = Piece { start, segment, heading, nodes: Vec::new(), spacing };
+            piece.nodes.push(piece.node(at, 0.0));
             for i in 0..count as usize {
                 let (dx, dy) = piece.chord(i as f64 * spacing, spacing);
-                at = Node { x: at.x + dx, y: at.y + dy };
-                piece.nodes.push(at);
+                at = (at.0 + dx, at.1 + dy);
+                piece.nodes.push(piece.node(at, (i + 1) as f64 * spacing));
             }
             heading = piece.heading_at(length);
             start += length;
@@ -143,10 +148,10 @@ impl Alignment {
         let (curvature, h) = (k0 + dk * u, (h0 + dh * u) / self.cant_base);
         let cos_cant = (1.0 - h * h).sqrt();
         let twist = dh / self.cant_base / cos_cant;
-        let node = p.position(u);
+        let (x, y) = p.position(u);
         let (sin, cos) = heading.sin_cos();
         (
-            [node.x, node.y, heading, curvature, h.asin(), twist],
+            [x, y, heading, curvature, h.asin(), twist],
             [[cos], [sin], [curvature], [dk], [twist], [twist * twist * h / cos_cant]],
         )
     }
@@ -175,6 +180,11 @@ impl Piece {
         self.heading + k0 * u + 0.5 * (k1 - k0) / self.segment.length * u * u
     }
 
+    fn node(&self, (x, y): (f64, f64), u: f64) -> Node {
+        let (sin, cos) = self.heading_at(u).sin_cos();
+        Node { x, y, sin, cos, curvature: self.curvature_at(u) }
+    }
+
     fn curvature_at(&self, u: f64) -> f64 {
         let [k0, k1] = self.segment.curvature;
         k0 + (k1 - k0) / self.segment.length * u
@@ -196,13 +206,11 @@ impl Piece {
     }
 
     /// Quintic Hermite interpolation: position, tangent and curvature vector agree at the nodes.
-    fn position(&self, u: f64) -> Node {
+    fn position(&self, u: f64) -> (f64, f64) {
         let h = self.spacing;
         let i = ((u / h) as usize).min(self.nodes.len() - 2);
         let t = u / h - i as f64;
         let (a, b) = (self.nodes[i], self.nodes[i + 1]);
-        let ends = [i as f64 * h, (i + 1) as f64 * h].map(|u| (self.heading_at(u).sin_cos(), self.curvature_at(u)));
-        let [((sa, ca), ka), ((sb, cb), kb)] = ends;
         let blend = |p0: f64, v0: f64, w0: f64, p1: f64, v1: f64, w1: f64| {
             let (t2, t3) = (t * t, t * t * t);
             let (t4, t5) = (t2 * t2, t2 * t3);
@@ -213,7 +221,10 @@ impl Piece {
                 + h * h * w0 * 0.5 * (t2 - 3.0 * t3 + 3.0 * t4 - t5)
                 + h * h * w1 * 0.5 * (t3 - 2.0 * t4 + t5)
         };
-        Node { x: blend(a.x, ca, -ka * sa, b.x, cb, -kb * sb), y: blend(a.y, sa, ka * ca, b.y, sb, kb * cb) }
+        (
+            blend(a.x, a.cos, -a.curvature * a.sin, b.x, b.cos, -b.curvature * b.sin),
+            blend(a.y, a.sin, a.curvature * a.cos, b.y, b.sin, b.curvature * b.cos),
+        )
     }
 }
 
