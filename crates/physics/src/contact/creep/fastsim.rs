@@ -61,22 +61,23 @@ impl<T: Scalar> Four<T> {
         let mut s = Self::default();
         for l in 0..4 {
             let dx = half[l] * 2.0 / nx;
-            s.step_x[l] = (slip.xi - slip.phi_y * y[l]) * dx;
-            s.step_y[l] = slip.eta * dx;
+            // A whole step to the middle of the first element, as Kalker has it, sums to (1 + 1/nx) of the linear theory.
+            let step = half[l] * 2.0 / (nx + 1.0);
+            s.step_x[l] = (slip.xi - slip.phi_y * y[l]) * step;
+            s.step_y[l] = slip.eta * step;
             s.spin[l] = slip.phi_x * (half[l] * dx);
             s.bound[l] = slip.bound * (half[l] * half[l]);
-            // The middle of the first element is half a step from the leading edge.
-            s.px[l] = -(s.step_x[l] * 0.5);
-            s.py[l] = -((s.step_y[l] + s.spin[l] * (1.0 - 0.5 / nx)) * 0.5);
         }
         s
     }
 
-    /// Takes the element whose middle is at `x` (in half lengths of the strip) and goes on to the next one.
+    /// Takes one more element, whose middle is at `x` (in half lengths of the strip).
     #[inline(always)]
-    fn element(&mut self, nx: f64, x: f64) {
+    fn element(&mut self, x: f64) {
         let (mut size2, mut limit, mut slipping) = ([T::zero(); 4], [T::zero(); 4], false);
         for l in 0..4 {
+            self.px[l] -= self.step_x[l];
+            self.py[l] -= self.step_y[l] + self.spin[l] * x;
             size2[l] = self.px[l].square() + self.py[l].square();
             limit[l] = self.bound[l] * (1.0 - x * x);
         }
@@ -94,8 +95,6 @@ impl<T: Scalar> Four<T> {
             self.sum[0][l] += self.px[l];
             self.sum[1][l] += self.py[l];
             self.sum[2][l] += self.py[l] * x;
-            self.px[l] -= self.step_x[l];
-            self.py[l] -= self.step_y[l] + self.spin[l] * (x - 1.0 / nx);
         }
     }
 }
@@ -115,7 +114,7 @@ fn advance<T: Scalar, const G: usize>(grid: &Grid, slip: &Slip<T>) -> Sums<T> {
     for i in 0..grid.nx {
         let x = 1.0 - (2 * i + 1) as f64 / nx;
         for f in fours.iter_mut() {
-            f.element(nx, x);
+            f.element(x);
         }
     }
     let strip = |j: usize| {
