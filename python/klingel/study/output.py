@@ -138,7 +138,7 @@ def write_report(
         operating_points=points,
         operating_note=(
             f"Running resistance by the formula {resistance.formula} for {resistance.stock} stock, a train of "
-            f"{resistance.cars} such cars, shared evenly by all wheels. Field current from Eq. (5), larger root, at "
+            f"{resistance.cars:g} such cars, shared evenly by all wheels. Field current from Eq. (5), larger root, at "
             f"x VaMax = {drive.traction_share * drive.armature_voltage_max:.0f} V; normalised by its rated "
             f"{drive.field_current_rated:g} A. Motors of this project's own design, see the parameters."
         ),
