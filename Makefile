@@ -37,6 +37,7 @@ lint: build ## rustfmt, clippy, ruff, mypy
 	$(BIN)/ruff format --check python tests
 	$(BIN)/ruff check python tests
 	$(BIN)/mypy
+	$(BIN)/python -m mypy.stubtest klingel._core
 
 format: $(VENV)/.packages ## format Rust and Python
 	cargo fmt --all

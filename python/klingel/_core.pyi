@@ -2,8 +2,10 @@
 
 from typing import Any, final
 
+__all__ = ["Cancelled", "CoreError", "Progress", "build_info", "check", "simulate"]
+
 class CoreError(ValueError): ...
-class Cancelled(Exception): ...
+class Cancelled(Exception): ...  # noqa: N818, named so by the core
 
 @final
 class Progress:
