@@ -8,12 +8,14 @@ pub mod normal;
 pub mod profile;
 mod spline;
 pub mod table;
+pub mod wheelset;
 
 pub use creep::{CreepForce, CreepLaw, RollingContact};
 pub use geometry::PairGeometry;
 pub use normal::Zone;
 pub use profile::Profile;
 pub use table::{ContactTable, OutsideTable, Patch};
+pub use wheelset::{LoadedState, RigidContact, RigidState, RigidWheelset};
 
 /// What a profile, a pair or a table can be refused for.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
