@@ -5,6 +5,7 @@ pub mod creep;
 pub mod geometry;
 pub mod hertz;
 pub mod normal;
+mod points;
 pub mod profile;
 mod spline;
 pub mod table;

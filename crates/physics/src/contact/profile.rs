@@ -4,7 +4,7 @@
 use super::ContactError;
 
 /// Spacing of the samples along the curve, m.
-const STEP: f64 = 5e-5;
+pub(super) const STEP: f64 = 5e-5;
 
 /// A profile z(y), metres, y rising; the canonical rail is the right one, its gauge side at negative y.
 ///
