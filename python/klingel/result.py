@@ -32,6 +32,9 @@ COMPLETED = "completed"
 FORMAT = "klingel-result-1"
 """Layout of the files, in their attribute `format`."""
 
+COMPRESSION: dict[str, Any] = {"zlib": True, "complevel": 1, "shuffle": True}
+"""Quick and understood by every reader of NetCDF."""
+
 _WRITING = threading.Lock()  # the netCDF library is not safe for threads
 
 
@@ -112,16 +115,17 @@ def _dataset(raw: Mapping[str, Any], spec: str) -> xr.Dataset:
 def save(result: xr.Dataset, path: str | Path, *, rate: float | None = DISK_RATE) -> Path:
     """Write a run as NetCDF, whole or not at all.
 
-    rate: of the samples in the file [Hz], None for all; samples are taken as they are, not filtered.
+    rate: of the samples in the file [Hz], None for all; samples are taken as they are, not filtered, and kept in
+    single precision, arc lengths in double.
     The file has one variable per quantity and unit over (channel, time): `Q` holds the vertical force of every wheel,
     its coordinate `Q_of` their names. Errors: InputError for a rate that does not divide that of the result.
     """
     path = Path(path)
     every = _every(result, rate)
-    packed = _pack(result.isel(time=slice(None, None, every)))
+    packed = _pack(result, every)
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f"{path.name}.{os.getpid()}-{threading.get_ident()}.tmp")
-    encoding = {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in packed.data_vars}
+    encoding = {name: COMPRESSION | {"dtype": "f8" if name == "s" else "f4"} for name in packed.data_vars}
     try:
         with _WRITING:
             packed.to_netcdf(part, engine="netcdf4", encoding=encoding)
@@ -160,20 +164,19 @@ def _every(result: xr.Dataset, rate: float | None) -> int:
     return round(every)
 
 
-def _pack(result: xr.Dataset) -> xr.Dataset:
+def _pack(result: xr.Dataset, every: int) -> xr.Dataset:
+    """One variable per quantity and unit, of every `every`-th sample."""
+    columns = result.variables
     groups: dict[tuple[str, str], list[str]] = {}
-    for channel in result.data_vars:
-        quantity = str(channel).rpartition(".")[2]
-        groups.setdefault((quantity, result[channel].attrs["units"]), []).append(str(channel))
-    taken: set[str] = set()
+    for channel in map(str, result.data_vars):
+        groups.setdefault((channel.rpartition(".")[2], columns[channel].attrs["units"]), []).append(channel)
     variables: dict[str, Any] = {}
-    coordinates: dict[str, Any] = {"time": result["time"]}
+    coordinates: dict[str, Any] = {"time": ("time", columns["time"].values[::every], columns["time"].attrs)}
     for (quantity, unit), channels in groups.items():
-        name = quantity if quantity not in taken else f"{quantity}_{len(taken)}"
-        taken.add(name)
+        name = quantity if quantity not in variables else f"{quantity}_{len(variables)}"
         of = f"{name}_of"
         coordinates[of] = (of, [c.rpartition(".")[0] for c in channels])
-        values = np.stack([result[c].values for c in channels])
+        values = np.stack([columns[c].values[::every] for c in channels])
         variables[name] = ((of, "time"), values, {"units": unit, "quantity": quantity})
     return xr.Dataset(variables, coords=coordinates, attrs=result.attrs)
 
