@@ -7,7 +7,7 @@ use crate::rates::{Workspace, rates};
 use klingel_physics::Dual;
 use nalgebra::{DMatrix, DVector};
 
-const DIRECTIONS: usize = 8;
+const DIRECTIONS: usize = 32;
 const MAX_ITERATIONS: usize = 60;
 /// The Newton step, relative to 1 + |x|, at which the equilibrium is found.
 const TOLERANCE: f64 = 1e-10;

@@ -1,0 +1,13 @@
+//! The engine against closed forms: bodies, rotors, joints, wheels and tracks whose motion is known exactly.
+//! Whole vehicles are tested in `tests/physics` through the Python package.
+
+mod bogie;
+mod common;
+mod energy;
+mod flange;
+mod frames;
+mod gyroscope;
+mod hunting;
+mod limits;
+mod scalars;
+mod wheelset;

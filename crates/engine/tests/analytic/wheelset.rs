@@ -1,0 +1,82 @@
+//! A single wheelset without suspension: its weight, Klingel's wave, the free rolling line of a curve.
+//! The derivations are in docs/theory/wheelset.md.
+
+use crate::common::{Plant, channel, run, straight, track, wheelset};
+use serde_json::{Value, json};
+
+/// Slope of the coned wheel; the rail leans in by as much, so it is touched on its 300 mm arc.
+const CONE: f64 = 0.05;
+/// Radius of the middle arc of a 60E1 head \[m\].
+const RAIL: f64 = 0.3;
+
+fn coned(track: Value, speed: f64, duration: f64) -> Value {
+    wheelset(json!({ "cone": CONE }), CONE, track, speed, duration)
+}
+
+/// Half distance of the contacts and rolling radius of the centred wheelset \[m\].
+fn contacts(plant: &Plant) -> (f64, f64) {
+    let wheel = &plant.model.wheels[1];
+    let depth = plant.depth_under(0.5 * 1813.0 * 9.81);
+    let patch = wheel.table.patches(0.0, depth, 0.0, 0.0).expect("contact")[0];
+    (wheel.half_tape_distance + patch.y_wheel, patch.radius)
+}
+
+#[test]
+fn static_loads_are_the_weight() {
+    let series = run(&wheelset(json!({ "named": "s1002" }), 0.025, straight(100.0), 10.0, 0.05));
+    assert!(series.fault.is_none(), "{:?}", series.fault);
+    let total: f64 = series.static_wheel_loads.iter().map(|l| l.1).sum();
+    assert!((total - 1813.0 * 9.81).abs() < 1e-3, "{total}");
+    let y = channel(&series, "wheelset.y");
+    assert!(y.iter().all(|y| y.abs() < 1e-9), "starts without a jolt");
+}
+
+/// L = 2 pi sqrt(b r0 / gamma), gamma = cone (1 + RAIL cone / b), as the speed goes to zero.
+///
+/// 0.2 %: at 5 m/s inertia lengthens the wave by some 1e-4, and the tilt of the loads and the spin forces,
+/// which nearly cancel each other, stay below 1e-3 of the creep forces.
+#[test]
+fn klingels_wave_has_its_length() {
+    let mut case = coned(straight(80.0), 5.0, 14.0);
+    case["run"]["kicks"] = json!([{ "body": "wheelset", "rotation": [0.0, 0.0, 0.0005] }]);
+    let (b, r0) = contacts(&Plant::new(&case));
+    let conicity = CONE * (1.0 + RAIL * CONE / b);
+    let expected = 2.0 * core::f64::consts::PI * (b * r0 / conicity).sqrt();
+    for law in ["linear", "fastsim"] {
+        case["creep"]["law"] = json!(law);
+        let series = run(&case);
+        let (s, y) = (channel(&series, "wheelset.s"), channel(&series, "wheelset.y"));
+        let crossings: Vec<f64> = (1..y.len())
+            .filter(|&i| y[i] * y[i - 1] < 0.0 && s[i] > 7.0)
+            .map(|i| s[i - 1] + (s[i] - s[i - 1]) * y[i - 1] / (y[i - 1] - y[i]))
+            .collect();
+        let waves = (crossings.len() - 1) as f64 / 2.0;
+        let length = (crossings[crossings.len() - 1] - crossings[0]) / waves;
+        assert!(waves >= 3.0, "{waves}");
+        assert!((length / expected - 1.0).abs() < 2e-3, "{law}: {length} m, expected {expected} m");
+    }
+}
+
+/// y = b r0 / (lambda R) outwards, lambda = cone (b + RAIL cone)/(b - r0 cone) over the shift of the axle's middle.
+///
+/// 1 %: elastic patches, and the lateral spin forces that differ between outer and inner wheel.
+#[test]
+fn a_wheelset_rolls_freely_on_its_line_in_a_curve() {
+    let (radius, speed) = (3000.0_f64, 20.0_f64);
+    for hand in [1.0, -1.0] {
+        let cant = hand * 1.5 * (speed * speed / (radius * 9.81)).atan().sin();
+        let case = coned(track(100.0, [hand / radius; 2], [cant; 2]), speed, 0.01);
+        let mut plant = Plant::new(&case);
+        let (b, r0) = contacts(&plant);
+        let conicity = CONE * (b + RAIL * CONE) / (b - r0 * CONE);
+        let expected = -hand * b * r0 / (conicity * radius);
+        let x = plant.equilibrium();
+        let y = x[plant.state("wheelset.y")];
+        assert!((y / expected - 1.0).abs() < 0.01, "{y} m, expected {expected} m");
+        plant.rates(&x);
+        for wheel in &plant.work.wheels {
+            // a wheel held 1 mm off its line would pull with some 300 N
+            assert!(wheel.force_T.x().abs() < 3.0, "{:?}", wheel.force_T);
+        }
+    }
+}
