@@ -411,6 +411,6 @@ fn profile(place: &str, spec: &ProfileSpec) -> Result<Result<Profile, ContactErr
             other => return Err(value(place, other, "choose s1002, 60e1 or uic60, or give points")),
         },
         ProfileSpec::Cone(slope) => Profile::cone(*slope),
-        ProfileSpec::Points { y, z } => Ok(Profile { y: y.clone(), z: z.clone(), slope: z.clone() }), // TEMP
+        ProfileSpec::Points { y, z } => Profile::from_points(y, z, place),
     })
 }
