@@ -11,17 +11,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from klingel.control.diagram import Diagram
-from klingel.control.discrete import low_pass
-from klingel.control.feedforward import GRAVITY, ContactDesign, SteeringGeometry, attack_angle_table
+from klingel.control.discrete import Section, low_pass, slope_low_pass
+from klingel.control.feedforward import ContactDesign, SteeringGeometry, attack_angle_table
 from klingel.drives import OperatingPoint, operating_point
 from klingel.errors import InputError
-from klingel.track import CANT_BASE
 
 if TYPE_CHECKING:
     from klingel.track import Track
     from klingel.vehicle import Drive, SteeringActuator, Vehicle
 
 SPEED = "body.speed"
+BUTTERWORTH = 0.7
+"""Damping ratio of all second-order low-passes here."""
 SPEED_GRID = tuple(float(v) for v in np.geomspace(5.0, 100.0, 25))
 """Speeds [m/s] of the gain schedules; below and above, the gain of the last one."""
 
@@ -126,41 +127,83 @@ def database_curvature(d: Diagram, name: str, track: Track, position: str) -> st
     return d.lookup(name, position, *profile_of(track, "curvature"))
 
 
-def database_curve(d: Diagram, w: Wheelset, track: Track, *, ahead: float, preview: float) -> tuple[str, str]:
-    """Curvature [1/m] and lateral acceleration [m/s2] `ahead` metres and `preview` seconds before a wheelset.
+def database_curve(d: Diagram, plant: Plant, w: Wheelset, track: Track, timing: Timing) -> str:
+    """Curvature [1/m] between a wheelset and its bogie's centre, from the track database.
 
-    The acceleration is the unbalanced one of the track plane, V^2 rho - g D/e.
+    It looks ahead by what the actuators and the computation take.
     """
-    speed = d.measure(SPEED)
-    terms: dict[str, float | str] = {d.measure(f"{w.name}.s"): 1.0, speed: preview}
-    position = d.sum(f"{w.name}.ahead", terms, bias=ahead)
-    rho = database_curvature(d, f"{w.name}.rho", track, position)
-    cant = d.lookup(f"{w.name}.cant", position, *profile_of(track, "cant"))
-    square = d.product(f"{w.name}.v2rho", speed, speed, rho)
-    return rho, d.sum(f"{w.name}.ay", {square: 1.0, cant: -GRAVITY / CANT_BASE})
+    preview = plant.actuator_lag + timing.computation_samples * timing.sample_time
+    terms: dict[str, float | str] = {d.measure(f"{w.name}.s"): 1.0, d.measure(SPEED): preview}
+    position = d.sum(f"{w.name}.ahead", terms, bias=-0.5 * w.lead * plant.geometry.half_wheelbase)
+    return database_curvature(d, f"{w.name}.rho", track, position)
 
 
-def sensed_curve(d: Diagram, w: Wheelset, timing: Timing, *, frequency: float) -> tuple[str, str]:
-    """Curvature [1/m] and lateral acceleration [m/s2] of a bogie from its own gyro and accelerometer.
+def sense_curve(d: Diagram, plant: Plant, contact: ContactDesign, timing: Timing, *, frequency: float) -> None:
+    """Curvature [1/m] at both bogies and its slope [1/(m s)] from their gyros, after the errors `wd.error` are known.
 
-    Both pass the same low-pass [Hz], above which hunting and track irregularity would steer.
+    A gyro cannot tell the turning of the track from that of the bogie on it, and the second follows from the steering
+    itself: a feedforward of the bare yaw rate is a loop with gain one. So the bogie's own turning is taken out:
+    psi_b = (y1 - y2)/(2 a) with the displacements that the speed differences tell, y V gamma/r0^2 = wd - lambda r/r0.
+    Both pass low-passes, at `frequency` [Hz] the track's and at four times that the bogie's own.
     """
-    section = [low_pass(frequency, sample_time=timing.sample_time)]
-    bogie = w.bogie_name
-    if w.number == 1:
-        yaw = d.delay(f"{bogie}.gyro", d.measure(f"{bogie}.yaw_rate"), timing.sensor_samples)
-        slow = d.filter(f"{bogie}.yaw_rate.slow", yaw, section)
-        d.quotient(f"{bogie}.rho", slow, d.measure(SPEED), floor=SPEED_GRID[0])
-        side = d.delay(f"{bogie}.accelerometer", d.measure(f"{bogie}.lateral_acceleration"), timing.sensor_samples)
-        d.filter(f"{bogie}.ay", side, section)
-    return f"{bogie}.rho", f"{bogie}.ay"
+    ts = timing.sample_time
+    per_error = -(plant.radius**2) / (contact.conicity * 2.0 * plant.geometry.half_wheelbase)
+    gain = scheduled(d, "bogie_yaw.gain", lambda v: per_error / v)
+    minus = d.sum("bogie_yaw.minus", {gain: -1.0})
+    for bogie in ("bogie1", "bogie2"):
+        first, second = (f"{bogie}.wheelset{i}.wd.error" for i in (1, 2))
+        yaw = d.sum(f"{bogie}.psi", {first: gain, second: minus})
+        own = d.filter(f"{bogie}.turning", yaw, [slope_low_pass(4.0 * frequency, sample_time=ts)])
+        gyro = d.delay(f"{bogie}.gyro", d.measure(f"{bogie}.yaw_rate"), timing.sensor_samples)
+        track = d.sum(f"{bogie}.track_rate", {gyro: 1.0, own: -1.0})
+        for name, section in (("rho", low_pass), ("rho.slope", slope_low_pass)):
+            rate = d.filter(f"{bogie}.{name}.rate", track, [section(frequency, sample_time=ts)])
+            d.quotient(f"{bogie}.{name}", rate, d.measure(SPEED), floor=SPEED_GRID[0])
 
 
-def steering_feedforward(d: Diagram, plant: Plant, contact: ContactDesign, w: Wheelset, rho: str, ay: str) -> str:
-    """M = kpsi [+-a rho + alpha_Y - psi_b] [N m] of a wheelset, from curvature and lateral acceleration."""
+def sensed_curve(d: Diagram, plant: Plant, w: Wheelset, *, frequency: float, extrapolation: float) -> str:
+    """Curvature [1/m] between a wheelset and its bogie's centre, after `sense_curve`.
+
+    It is carried forward along the measured slope by `extrapolation` times what the filter and the actuators lag.
+    """
+    lag = extrapolation * (2.0 * BUTTERWORTH / (2.0 * math.pi * frequency) + plant.actuator_lag)
+    ahead = 0.5 * w.lead * plant.geometry.half_wheelbase
+    time = scheduled(d, f"{w.name}.rho.time", lambda v: lag + extrapolation * ahead / v)
+    return d.sum(f"{w.name}.rho", {f"{w.bogie_name}.rho": 1.0, f"{w.bogie_name}.rho.slope": time})
+
+
+def sense_inertia(d: Diagram, plant: Plant, timing: Timing, *, frequency: float) -> None:
+    """Mean lateral force [N] of the wheelsets of each bogie and the yaw-damper moment [N m], by inertial sensors.
+
+    Body and bogies weigh what they accelerate: m_b a/4 +- I_z r'/(4 L) from the body's accelerometer and gyro, and the
+    bogie's own mass; c (r_bogie - r_body) from the gyros.
+    """
+    g, ts = plant.geometry, timing.sample_time
+
+    def sense(name: str, channel: str, section: Section) -> str:
+        return d.filter(name, d.delay(f"{name}.now", d.measure(channel), timing.sensor_samples), [section])
+
+    low = low_pass(frequency, sample_time=ts)
+    ay = sense("body.ay", "body.lateral_acceleration", low)
+    turn = sense("body.turn", "body.yaw_rate", slope_low_pass(frequency, sample_time=ts))
+    rate = sense("body.rate", "body.yaw_rate", low)
+    for bogie, front in (("bogie1", 1.0), ("bogie2", -1.0)):
+        own = sense(f"{bogie}.ay", f"{bogie}.lateral_acceleration", low)
+        leverage = front * g.body_yaw_inertia / (4.0 * g.half_bogie_spacing)
+        d.sum(f"{bogie}.Y", {ay: g.body_mass / 4.0, turn: leverage, own: g.bogie_mass / 2.0})
+        relative = sense(f"{bogie}.rate", f"{bogie}.yaw_rate", low)
+        d.sum(f"{bogie}.M.damper", {relative: g.yaw_damping, rate: -g.yaw_damping})
+
+
+def steering_feedforward(d: Diagram, plant: Plant, contact: ContactDesign, w: Wheelset, rho: str) -> str:
+    """M = kpsi [+-a rho + alpha_Y - psi_b] [N m] of a wheelset, after `sense_inertia`."""
     g = plant.geometry
-    share = g.lateral_share(w.bogie, w.number)
-    force = d.sum(f"{w.name}.Y", {ay: g.mass / 4.0, rho: share})
+    bogie = w.bogie_name
+    pair: dict[str, float | str] = {
+        rho: g.lateral_share(w.bogie, w.number),
+        f"{bogie}.M.damper": g.pair_share(w.number),
+    }
+    force = d.sum(f"{w.name}.Y", {f"{bogie}.Y": 1.0, **pair})
     alpha = d.lookup(f"{w.name}.alpha", force, *attack_angle_table(g, contact))
     radial = w.lead * g.half_wheelbase - g.bogie_yaw(w.bogie)
     return d.sum(f"{w.name}.M.feedforward", {rho: g.yaw_stiffness * radial, alpha: g.yaw_stiffness})

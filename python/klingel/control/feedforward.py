@@ -21,15 +21,15 @@ class ContactDesign:
     """Wheel-rail contact as the controllers assume it; the vehicle itself runs on the real contact.
 
     longitudinal_creep, lateral_creep: f11, f22 of one wheel at `load` [N]: Kalker's coefficients on the Hertz ellipse
-    of S1002 on 60E1 at 1:40; they scale with load^(2/3). conicity: gamma, effective slope at 1 to 2 mm. friction: 0.30,
-    below the study's 0.35, so that a rail a little more slippery than usual is still steered well.
+    of S1002 on 60E1 at 1:40; they scale with load^(2/3). conicity: gamma, effective slope at 1 to 2 mm. friction: 0.35,
+    a dry rail; on a more slippery one the feedback adds what is missing.
     """
 
     longitudinal_creep: float = 10.0e6
     lateral_creep: float = 8.8e6
     load: float = 54.5e3
     conicity: float = 0.2
-    friction: float = 0.30
+    friction: float = 0.35
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,8 @@ class SteeringGeometry:
     """What the feedforward needs of a vehicle, all SI.
 
     yaw_stiffness: kpsi of one wheelset's primary suspension [N m/rad]; lateral_stiffness: of one wheelset [N/m];
-    secondary_yaw: kpsi of one bogie's secondary suspension [N m/rad]; centre_height: of the whole vehicle [m].
+    secondary_yaw: kpsi of one bogie's secondary suspension [N m/rad]; yaw_damping: of its yaw dampers [N m s/rad];
+    mass, centre_height: of the whole vehicle; body_yaw_inertia about its centre of mass [kg m2].
     """
 
     half_wheelbase: float
@@ -48,6 +49,14 @@ class SteeringGeometry:
     yaw_stiffness: float
     lateral_stiffness: float
     secondary_yaw: float
+    yaw_damping: float
+    body_mass: float
+    body_yaw_inertia: float
+
+    @property
+    def bogie_mass(self) -> float:
+        """Of one bogie with its wheelsets [kg]."""
+        return 0.5 * (self.mass - self.body_mass)
 
     @classmethod
     def of(cls, vehicle: Vehicle) -> SteeringGeometry:
@@ -64,16 +73,27 @@ class SteeringGeometry:
             yaw_stiffness=2.0 * p.stiffness.x * p.half_spacing**2,
             lateral_stiffness=2.0 * p.stiffness.y,
             secondary_yaw=2.0 * s.stiffness.x * s.half_spacing**2,
+            yaw_damping=2.0 * d.damping * d.half_spacing**2 if (d := vehicle.yaw_damper) else 0.0,
+            body_mass=vehicle.body.mass,
+            body_yaw_inertia=vehicle.body.inertia.yaw,
         )
+
+    def pair_share(self, wheelset: int) -> float:
+        """Lateral force of a wheelset over the yaw moment that its bogie needs [1/m]: +-1/(2 a).
+
+        Two wheelsets that are free of yaw moment turn their bogie by a pair of lateral forces.
+        """
+        lead = 1.0 if wheelset == 1 else -1.0
+        return lead / (2.0 * self.half_wheelbase)
 
     def lateral_share(self, bogie: int, wheelset: int) -> float:
         """d(Y)/d(rho) [N m] of a wheelset by the yaw of its bogie against the body: +-kpsi_secondary L / (2 a).
 
-        The secondary suspension turns the bogie back towards the body; the two wheelsets hold that moment by a pair of
-        lateral forces: + for wheelset 1 of bogie 1 and wheelset 2 of bogie 2, - for the two inner ones.
+        The secondary suspension turns the bogie back towards the body: + for wheelset 1 of bogie 1 and wheelset 2 of
+        bogie 2, - for the two inner ones.
         """
-        sign = 1.0 if bogie == wheelset else -1.0
-        return sign * self.secondary_yaw * self.half_bogie_spacing / (2.0 * self.half_wheelbase)
+        front = 1.0 if bogie == 1 else -1.0
+        return self.pair_share(wheelset) * front * self.secondary_yaw * self.half_bogie_spacing
 
     def bogie_yaw(self, bogie: int) -> float:
         """d(psi_b)/d(rho) [m]: the bogie frame's yaw that the same pair of forces makes on the primary springs."""
@@ -93,7 +113,7 @@ def attack_angle(force: float, geometry: SteeringGeometry, contact: ContactDesig
     The wheel loads are those of the cant deficiency that Y stands for: m/4 a_nc = Y, with the moment of a_nc about the
     rails at the height of the vehicle's centre of mass. Linear for small forces: Y/(2 f22).
 
-    >>> geometry = SteeringGeometry(1.28, 9.5, 0.75, 45630.0, 1.42, 3.0e6, 7.77e6, 3.2e5)
+    >>> geometry = SteeringGeometry(1.28, 9.5, 0.75, 45630.0, 1.42, 3.0e6, 7.77e6, 3.2e5, 0.0, 32e3, 1.97e6)
     >>> round(1e3 * attack_angle(1e3, geometry, ContactDesign()), 3)
     0.056
     """

@@ -19,6 +19,8 @@ from klingel.control.common import (
     database_curvature,
     database_curve,
     scheduled,
+    sense_curve,
+    sense_inertia,
     sensed_curve,
     speed_difference,
     steering_feedforward,
@@ -33,7 +35,7 @@ if TYPE_CHECKING:
 
 Curvature = Literal["gyro", "database"]
 
-FREQUENCY = {"gyro": 1.6, "database": 1.2}
+FREQUENCY = {"gyro": 1.6, "database": 1.6}
 """Crossover of the steering loop [Hz]: with the gyro the yaw rate of the wheelset itself is subtracted, which leaves
 V gamma y/r0^2 alone and bears a faster loop."""
 
@@ -48,8 +50,9 @@ class IRWLike:
     integral_time: Ti of the steering loop [s], five times the loop's own time so that it costs little phase.
     current_frequency: crossover of the differential current loop [Hz]: above all motion of the wheelset, below what a
         delay of two samples bears.
-    sensor_frequency: low-pass of the sensed curve [Hz]; it delays the feedforward, so not lower than needed to keep
-        the yaw of the bogie from steering itself.
+    gyro_frequency: low-pass of the bogie's yaw rate [Hz] that the radial part of the feedforward is made of; low, so
+        that the yaw of the bogie does not steer itself.
+    sensor_frequency: low-pass of the inertial sensors [Hz], above the body's own modes near 1 Hz.
     timing: sampling and delays. contact: what the design assumes of wheel and rail.
 
     >>> from klingel import library
@@ -61,9 +64,11 @@ class IRWLike:
 
     curvature: Curvature = "gyro"
     frequency: float | None = None
-    integral_time: float = 0.8
+    integral_time: float = 1.0
     current_frequency: float = 30.0
-    sensor_frequency: float = 1.5
+    gyro_frequency: float = 1.5
+    extrapolation: float = 1.0
+    sensor_frequency: float = 2.0
     timing: Timing = field(default_factory=Timing)
     contact: ContactDesign = field(default_factory=ContactDesign)
 
@@ -73,7 +78,7 @@ class IRWLike:
             raise InputError.single("control.curvature", self.curvature, "is not known", remedy=remedy)
         if self.frequency is not None:
             check_positive(self, ("frequency",))
-        check_positive(self, ("integral_time", "current_frequency", "sensor_frequency"))
+        check_positive(self, ("integral_time", "current_frequency", "gyro_frequency", "sensor_frequency"))
 
     def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any]:
         """The block diagram for a vehicle at a speed [m/s]; the track is used by the database variant only.
@@ -84,8 +89,13 @@ class IRWLike:
         d = Diagram(sample_time=self.timing.sample_time)
         proportional = scheduled(d, "steering.gain", lambda v: self._steering_gain(plant, v))
         integral = d.sum("steering.integral_gain", {proportional: 1.0 / self.integral_time})
+        sense_inertia(d, plant, self.timing, frequency=self.sensor_frequency)
         for wheelset in WHEELSETS:
             self._torque_loop(d, plant, wheelset)
+            self._speed_error(d, plant, wheelset, track)
+        if self.curvature == "gyro":
+            sense_curve(d, plant, self.contact, self.timing, frequency=self.gyro_frequency)
+        for wheelset in WHEELSETS:
             self._steering_loop(d, plant, wheelset, track, proportional, integral)
         return d.spec()
 
@@ -110,22 +120,25 @@ class IRWLike:
         )
         command_motors(d, plant, w, voltage, self.timing)
 
-    def _steering_loop(
-        self, d: Diagram, plant: Plant, w: Wheelset, track: Track, proportional: str, integral: str
-    ) -> None:
-        """M = feedforward - K (1 + 1/(Ti s)) (wd - lambda r/r0), r the yaw rate of the wheelset or of the track."""
+    def _speed_error(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
+        """lambda r/r0 - wd [rad/s], r the yaw rate of the wheelset or of the track: -V gamma y/r0^2."""
         wd = speed_difference(d, w, self.timing)
         if self.curvature == "gyro":
             rate = d.delay(f"{w.name}.gyro", d.measure(f"{w.name}.yaw_rate"), self.timing.sensor_samples)
-            rho, ay = sensed_curve(d, w, self.timing, frequency=self.sensor_frequency)
         else:
             here = database_curvature(d, f"{w.name}.rho.here", track, d.measure(f"{w.name}.s"))
             rate = d.product(f"{w.name}.turn", here, d.measure(SPEED))
-            preview = plant.actuator_lag + self.timing.computation_samples * self.timing.sample_time
-            ahead = -0.5 * w.lead * plant.geometry.half_wheelbase
-            rho, ay = database_curve(d, w, track, ahead=ahead, preview=preview)
-        error = d.sum(f"{w.name}.wd.error", {rate: plant.speed_ratio, wd: -1.0})
-        limit = 0.5 * plant.moment_max
+        d.sum(f"{w.name}.wd.error", {rate: plant.speed_ratio, wd: -1.0})
+
+    def _steering_loop(
+        self, d: Diagram, plant: Plant, w: Wheelset, track: Track, proportional: str, integral: str
+    ) -> None:
+        """M = feedforward + K (1 + 1/(Ti s)) (lambda r/r0 - wd)."""
+        if self.curvature == "gyro":
+            rho = sensed_curve(d, plant, w, frequency=self.gyro_frequency, extrapolation=self.extrapolation)
+        else:
+            rho = database_curve(d, plant, w, track, self.timing)
+        error, limit = f"{w.name}.wd.error", 0.5 * plant.moment_max
         feedback = d.pi(f"{w.name}.M.feedback", error, proportional=proportional, integral=integral, limit=limit)
-        feedforward = steering_feedforward(d, plant, self.contact, w, rho, ay)
+        feedforward = steering_feedforward(d, plant, self.contact, w, rho)
         command_steering(d, plant, w, d.sum(f"{w.name}.M", {feedforward: 1.0, feedback: 1.0}), self.timing)

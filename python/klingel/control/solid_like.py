@@ -19,6 +19,7 @@ from klingel.control.common import (
     database_curvature,
     database_curve,
     scheduled,
+    sense_inertia,
     speed_difference,
     steering_feedforward,
 )
@@ -35,13 +36,14 @@ if TYPE_CHECKING:
 class SolidLike:
     """Differential speed control plus yaw-moment control; parameters with their reasons.
 
-    coupling: damping between the wheels over f11 r0^2/V. 0.35 couples them enough to centre the wheelset and leaves
-        hunting damped up to 265 km/h with the soft primary suspension; 0.8 leaves 1 to 2 % damping there.
+    coupling: damping between the wheels over f11 r0^2/V up to `coupling_speed` [m/s], falling with 1/V above: enough to
+        centre the wheelset, little enough that its hunting stays damped on the soft primary suspension.
     integral_time: of the speed loop [s]. Slow, because integral coupling of two wheels acts as a spring at the hunting
         frequency; it only removes what friction and unequal radii leave.
     lead_pole: time constant [s] that replaces the armature's La/Ra in the speed loop.
     notch_frequency, notch_depth, notch_width: of the transmission's torsion mode with the wheel held by creep [Hz].
     yaw_frequency: crossover of the yaw-moment loop [Hz], below the hunting band of 2 to 8 Hz.
+    sensor_frequency: low-pass of the inertial sensors [Hz], above the body's own modes near 1 Hz.
     timing: sampling and delays. contact: what the design assumes of wheel and rail.
 
     >>> from klingel import library
@@ -51,19 +53,29 @@ class SolidLike:
     16
     """
 
-    coupling: float = 0.35
+    coupling: float = 0.25
+    coupling_speed: float = 36.0
     integral_time: float = 5.0
     lead_pole: float = 0.002
     notch_frequency: float = 55.0
     notch_depth: float = 0.1
     notch_width: float = 0.5
     yaw_frequency: float = 0.7
+    sensor_frequency: float = 2.0
     timing: Timing = field(default_factory=Timing)
     contact: ContactDesign = field(default_factory=ContactDesign)
 
     def __post_init__(self) -> None:
-        names = ("coupling", "integral_time", "lead_pole", "notch_frequency", "notch_depth", "notch_width")
-        check_positive(self, (*names, "yaw_frequency"))
+        names = (
+            "coupling",
+            "coupling_speed",
+            "integral_time",
+            "lead_pole",
+            "notch_frequency",
+            "notch_depth",
+            "notch_width",
+        )
+        check_positive(self, (*names, "yaw_frequency", "sensor_frequency"))
 
     def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any]:
         """The block diagram for a vehicle at a speed [m/s] on a track whose curvature the database knows.
@@ -74,6 +86,7 @@ class SolidLike:
         d = Diagram(sample_time=self.timing.sample_time)
         proportional = scheduled(d, "speed_loop.gain", lambda v: self._voltage_gain(plant, v))
         integral = d.sum("speed_loop.integral_gain", {proportional: 1.0 / self.integral_time})
+        sense_inertia(d, plant, self.timing, frequency=self.sensor_frequency)
         for wheelset in WHEELSETS:
             self._speed_loop(d, plant, wheelset, track, proportional, integral)
             self._yaw_moment_loop(d, plant, wheelset, track)
@@ -81,7 +94,8 @@ class SolidLike:
 
     def _voltage_gain(self, plant: Plant, speed: float) -> float:
         """Volts per rad/s that make the wanted damping torque through KT/(N Ra)."""
-        damping = self.coupling * self.contact.longitudinal_creep * plant.radius**2 / speed
+        coupling = self.coupling * min(1.0, self.coupling_speed / speed)
+        damping = coupling * self.contact.longitudinal_creep * plant.radius**2 / speed
         return damping * plant.drive.gear_ratio * plant.drive.armature_resistance / plant.point.torque_constant
 
     def _speed_loop(
@@ -105,10 +119,8 @@ class SolidLike:
 
     def _yaw_moment_loop(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
         """Integral control of the total yaw moment on the wheelset to zero, around the feedforward."""
-        preview = plant.actuator_lag + self.timing.computation_samples * self.timing.sample_time
-        ahead = -0.5 * w.lead * plant.geometry.half_wheelbase
-        rho, ay = database_curve(d, w, track, ahead=ahead, preview=preview)
-        feedforward = steering_feedforward(d, plant, self.contact, w, rho, ay)
+        rho = database_curve(d, plant, w, track, self.timing)
+        feedforward = steering_feedforward(d, plant, self.contact, w, rho)
         total = d.delay(f"{w.name}.M.total", d.measure(f"{w.name}.yaw_moment"), self.timing.sensor_samples)
         error = d.sum(f"{w.name}.M.error", {total: -1.0})
         crossover = 2.0 * math.pi * self.yaw_frequency
