@@ -45,9 +45,18 @@ def test_figures_over_the_radius(table, name):
 
 
 def test_the_least_lateral_force_is_dotted(table):
-    line = next(line for line in per_radius(table, "fig18").axes[0].lines if "least" in str(line.get_label()))
+    line = next(line for line in per_radius(table, "fig18").axes[0].lines if "own mass" in str(line.get_label()))
     assert line.get_linestyle() == ":"
     np.testing.assert_allclose(line.get_ydata(), table["lateral_force_floor_kN"].iloc[: len(RADII)])
+
+
+def test_vehicles_of_different_mass_have_their_own_floor(table):
+    heavier = table.assign(
+        lateral_force_floor_kN=table["lateral_force_floor_kN"] + 0.5 * (table["vehicle"] != "passive")
+    )
+    lines = {str(line.get_label()): line for line in per_radius(heavier, "fig18").axes[0].lines}
+    passive, active = (lines[f"own mass / 4 × unbalanced acceleration, {name}"] for name in ("passive", "active"))
+    np.testing.assert_allclose(active.get_ydata(), passive.get_ydata() + 0.5)
 
 
 def test_runs_that_did_not_complete_are_crossed_out(table):

@@ -24,8 +24,9 @@ CARRYING_FORCE = 1.0e3
 """A steep patch counts when it carries more than this [N]."""
 CARRYING_TIME = 0.1
 """... for longer than this [s]."""
-FLANGE_ANGLE = math.radians(50.0)
-"""A carrying patch steeper than this lies on the flange, else in the root [rad] (S1002: flank 70 deg, root below)."""
+FLANGE_ANGLE = math.radians(60.0)
+"""A carrying patch steeper than this lies on the flange, else in the root [rad]. The flank of S1002 has 70 deg; in
+two-point contact the steeper patch of a root contact reaches 50 to 55 deg."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ class Assessment:
             accelerometer reads it, 20 Hz low-pass (EN 14363, quasi-static part included).
         spin_work_N: mean of |Mz phi| per wheel over the arc and all wheels; not part of the wear index.
         flange_contact: `root` or `flange` if a patch steeper than 15 deg carried more than 1 kN for more than 0.1 s
-            without a break, `flange` if it was steeper than 50 deg for as long; else empty.
+            without a break, `flange` if it was steeper than 60 deg for as long; else empty.
         outcome: `completed`, or what ended the run, where and when.
         realtime_factor: simulated seconds over CPU seconds of the stepping thread.
         wheelsets: the share of each wheelset, by name (not a column).

@@ -47,7 +47,7 @@ FIGURES: Mapping[str, RadiusFigure] = {
         "Largest lateral force of a wheelset on the track",
         "max |ΣY|, 20 Hz low-pass  [kN]",
         "lateral_force_floor_kN",
-        "least achievable: own mass / 4 × unbalanced acceleration",
+        "own mass / 4 × unbalanced acceleration",
     ),
     "fig19": RadiusFigure("wear_index_N", "Mean wear index of the wheels in the arc", "mean |Fx ξ| + |Fy η|  [N]"),
 }
@@ -119,15 +119,7 @@ def per_radius(table: pd.DataFrame, name: str) -> Figure:
         axis.set_title(quantity.title, pad=10)
         radii = table.drop_duplicates("radius_m").sort_values("radius_m")
         if quantity.floor:
-            axis.plot(
-                radii["radius_m"],
-                radii[quantity.floor],
-                ls=":",
-                lw=1.8,
-                color=INK,
-                label=quantity.floor_label,
-                zorder=3,
-            )
+            _floors(axis, table, quantity)
         for vehicle, look in LOOKS.items():
             rows = table[table["vehicle"] == vehicle].sort_values("radius_m")
             if len(rows):
@@ -155,6 +147,25 @@ def per_radius(table: pd.DataFrame, name: str) -> Figure:
         axis.set_ylim(bottom=0.0, top=_headroom(table, quantity))
         axis.legend(loc="best", handlelength=3.4)
         return figure
+
+
+def _floors(axis: Axes, table: pd.DataFrame, quantity: RadiusFigure) -> None:
+    """The least achievable value, dotted: one line for all vehicles of the same mass."""
+    groups: dict[tuple[float, ...], list[str]] = {}
+    for vehicle, rows in table.sort_values("radius_m").groupby("vehicle", sort=False):
+        groups.setdefault(tuple(rows[quantity.floor].round(6)), []).append(str(vehicle))
+    for floor, vehicles in groups.items():
+        radii = table[table["vehicle"] == vehicles[0]].sort_values("radius_m")["radius_m"]
+        passive = vehicles == ["passive"]
+        axis.plot(
+            radii,
+            floor,
+            ls=":",
+            lw=1.2 if passive else 2.0,
+            color=PALE if passive else INK,
+            label=quantity.floor_label + ("" if len(groups) == 1 else ", passive" if passive else ", active"),
+            zorder=3,
+        )
 
 
 def _headroom(table: pd.DataFrame, quantity: RadiusFigure) -> float:

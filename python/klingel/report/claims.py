@@ -9,7 +9,10 @@ from typing import Literal
 
 import numpy as np
 
+from klingel.assess.curving import FLANGE_ANGLE
 from klingel.report.summary import ACTIVE, SHORT, Summary, joined
+
+FLANGE = math.degrees(FLANGE_ANGLE)
 
 Verdict = Literal["agrees", "agrees in part", "differs", "not run"]
 
@@ -107,7 +110,7 @@ def _passive_flange(summary: Summary) -> Claim:
     )
     reason += (
         "before the 70 deg flank is reached. "
-        if steepest < 60.0
+        if steepest < FLANGE
         else "until, in the sharpest curves, the flank itself is reached. "
     )
     if touched < len(contacts):

@@ -40,7 +40,7 @@ HEADINGS: Mapping[str, Heading] = {
         "flange",
         "",
         0,
-        "a patch steeper than 15° carried more than 1 kN for more than 0.1 s: root, or flange above 50°",
+        "a patch steeper than 15° carried more than 1 kN for more than 0.1 s: root, or flange above 60°",
     ),
     "outcome": Heading("outcome", "", 0, "completed, or what ended the run, where and when"),
     "realtime_factor": Heading("× real time", "", 1, "simulated seconds over CPU seconds of the stepping thread"),
