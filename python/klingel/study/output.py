@@ -88,7 +88,7 @@ def write_figures(folder: Path, main: pd.DataFrame, histories: Mapping[str, Hist
             {vehicle: history.displacement for vehicle, history in histories.items()},
             one.wheelsets,
             one.course,
-            caption=f"R = {1.0 / abs(one.course.curvature):.0f} m",
+            caption=f"R = {1.0 / abs(one.course.curvature):.0f} m, {3.6 * one.speed:.0f} km/h",
         )
     if len(main):
         figures |= {name: per_radius(main, name) for name in FIGURES}

@@ -31,11 +31,12 @@ HISTORY_RADIUS = 800.0
 
 @dataclass(frozen=True)
 class History:
-    """What Fig. 15 needs of one run: displacement and position of the wheelsets, and where the curve lies."""
+    """What Fig. 15 needs of one run: displacement and position of the wheelsets, the curve, and the speed [m/s]."""
 
     displacement: xr.Dataset
     wheelsets: tuple[str, ...]
     course: Course
+    speed: float
 
 
 @dataclass(frozen=True)
@@ -152,7 +153,7 @@ def _history(series: xr.Dataset, one: Run) -> History | None:
     channels = [f"{name}.{quantity}" for name in names for quantity in ("y", "s")]
     interval = float(series["time"][1] - series["time"][0])
     stride = max(1, round(5e-3 / interval))
-    return History(series[channels].isel(time=slice(None, None, stride)).copy(), names, header.course)
+    return History(series[channels].isel(time=slice(None, None, stride)).copy(), names, header.course, header.speed)
 
 
 def _written(folder: Path, runs: Mapping[str, Run], batch: Batch[Finished], started: float, console: Console) -> Study:
