@@ -51,12 +51,8 @@ fn table_dual4(bencher: Bencher, shift: f64) {
     });
 }
 
-const LAWS: [CreepLaw; 4] = [
-    CreepLaw::Linear,
-    CreepLaw::Polach,
-    CreepLaw::Fastsim { nx: 10, ny: 10 },
-    CreepLaw::Fastsim { nx: 16, ny: 16 },
-];
+const LAWS: [CreepLaw; 4] =
+    [CreepLaw::Linear, CreepLaw::Polach, CreepLaw::Fastsim { nx: 10, ny: 10 }, CreepLaw::Fastsim { nx: 16, ny: 16 }];
 
 fn patch<S: Scalar>(slip: f64) -> RollingContact<S> {
     let c = S::constant;

@@ -46,7 +46,7 @@ impl PairGeometry {
             .map(|[y, z, slope]| [y * cos + z * sin, z * cos - y * sin, (slope * cos - sin) / (cos + slope * sin)]);
         // On an inclined rail an upright flank may overhang: only what can be seen from above is kept.
         let top = (0..rail.y.len()).min_by(|&i, &j| rail.z[i].total_cmp(&rail.z[j])).unwrap_or(0);
-        let steep = |i: &usize| !(rail.slope[*i].abs() < 60.0) || (rail.slope[*i] > 0.0) != (*i >= top);
+        let steep = |i: &usize| rail.slope[*i].abs() > 60.0 || (rail.slope[*i] > 0.0) != (*i >= top);
         let first = (0..top).rev().filter(|&i| i + 3 < top).find(steep).map_or(0, |i| i + 1);
         let last = (top..rail.y.len()).filter(|&i| i > top + 3).find(steep).unwrap_or(rail.y.len());
         let cut = |v: &[f64]| v[first..last].to_vec();
@@ -101,12 +101,28 @@ pub(super) struct Strips {
     /// Middle of each strip: place and radius increment.
     pub y: Vec<f64>,
     pub z: Vec<f64>,
-    /// Cosine of the angle, and the angle itself (rad, positive on the flange).
-    pub cos: Vec<f64>,
+    /// Angle (rad, positive on the flange), its cosine and sine.
     pub angle: Vec<f64>,
+    pub cos: Vec<f64>,
+    pub sin: Vec<f64>,
 }
 
 impl Strips {
+    /// The whole running surface of a wheel, from the tip of its flange to its field side.
+    ///
+    /// # Errors
+    /// A profile without a flange 10 mm high at negative y, or that rises again on the field side.
+    pub fn of_wheel(wheel: &Profile, width: f64) -> Result<Self, ContactError> {
+        let tip = (0..wheel.y.len()).max_by(|&i, &j| wheel.z[i].total_cmp(&wheel.z[j])).unwrap_or(0);
+        let end = wheel.y.len() - 1;
+        let remedy = "give a wheel profile: y to the field side, flange at negative y with positive z";
+        check("highest point of the wheel's flange: y", wheel.y[tip], [-0.1, -0.02], remedy)?;
+        check("height of the wheel's flange", wheel.z[tip], [0.01, 0.06], remedy)?;
+        check("height of the wheel's field side", wheel.z[end], [-0.05, 0.01], remedy)?;
+        check("field side of the wheel: y", wheel.y[end], [0.01, 0.15], remedy)?;
+        Ok(Self::new(wheel, [wheel.y[tip], wheel.y[end]], width))
+    }
+
     /// About `width` wide strips of `wheel` from `y0` to `y1`, which must lie on the profile.
     pub fn new(wheel: &Profile, [y0, y1]: [f64; 2], width: f64) -> Self {
         let speed = |y: f64| wheel.at(y).map_or(1.0, |(_, s)| (1.0 + s * s).sqrt());
@@ -126,8 +142,10 @@ impl Strips {
             let (z, slope) = wheel.at(y).unwrap_or_default();
             strips.y.push(y);
             strips.z.push(z);
-            strips.cos.push(1.0 / (1.0 + slope * slope).sqrt());
+            let cos = 1.0 / (1.0 + slope * slope).sqrt();
             strips.angle.push((-slope).atan());
+            strips.cos.push(cos);
+            strips.sin.push(-slope * cos);
         }
         strips
     }
@@ -135,7 +153,14 @@ impl Strips {
     /// Strips `first` to `end`.
     pub fn part(&self, first: usize, end: usize) -> Self {
         let cut = |v: &[f64]| v[first..end].to_vec();
-        Self { width: self.width, y: cut(&self.y), z: cut(&self.z), cos: cut(&self.cos), angle: cut(&self.angle) }
+        Self {
+            width: self.width,
+            y: cut(&self.y),
+            z: cut(&self.z),
+            angle: cut(&self.angle),
+            cos: cut(&self.cos),
+            sin: cut(&self.sin),
+        }
     }
 }
 

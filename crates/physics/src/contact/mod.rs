@@ -9,6 +9,8 @@ mod points;
 pub mod profile;
 mod spline;
 pub mod table;
+#[cfg(test)]
+mod tests;
 pub mod wheelset;
 
 pub use creep::{CreepForce, CreepLaw, RollingContact};

@@ -69,7 +69,7 @@ fn sampled(points: &[[f64; 2]]) -> Result<Profile, usize> {
         let s = length * i as f64 / count as f64;
         let k = chord.partition_point(|&c| c <= s).clamp(1, chord.len() - 1) - 1;
         let ((y, dy), (z, dz)) = (read(&chord, &y, &bend_y, k, s), read(&chord, &z, &bend_z, k, s));
-        if !(dy > 0.0) || profile.y.last().is_some_and(|&before| y <= before) {
+        if dy <= 0.0 || profile.y.last().is_some_and(|&before| y <= before) {
             return Err(k + 1);
         }
         profile.y.push(y);

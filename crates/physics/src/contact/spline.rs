@@ -41,15 +41,21 @@ impl Axis {
 
 /// Sums three by three rows of `W` numbers that start at `rows`, each times its weight.
 #[inline(always)]
-fn rows<const W: usize>(nodes: &[f64], first: usize, stride: usize, step: usize, u: &[f64; 3], v: &[f64; 3]) -> [f64; W] {
+fn rows<const W: usize>(
+    nodes: &[f64],
+    first: usize,
+    stride: usize,
+    step: usize,
+    u: &[f64; 3],
+    v: &[f64; 3],
+) -> [f64; W] {
     let mut sum = [0.0; W];
-    for i in 0..3 {
-        for j in 0..3 {
+    for (i, u) in u.iter().enumerate() {
+        for (j, v) in v.iter().enumerate() {
             let start = first + i * stride + j * step;
-            let w = u[i] * v[j];
-            let row = &nodes[start..start + W];
-            for k in 0..W {
-                sum[k] += w * row[k];
+            let w = u * v;
+            for (s, c) in sum.iter_mut().zip(&nodes[start..start + W]) {
+                *s += w * c;
             }
         }
     }

@@ -9,9 +9,9 @@ use crate::{Mask, Scalar};
 use rayon::prelude::*;
 
 /// The tables' reach: shift of the right wheel to the field side (m), roll (rad).
-const SHIFT: [f64; 2] = [-0.012, 0.014];
+const SHIFT: [f64; 2] = [-0.016, 0.016];
 const ROLL: [f64; 2] = [-0.012, 0.012];
-const SHIFT_INTERVALS: usize = 260;
+const SHIFT_INTERVALS: usize = 320;
 const ROLL_INTERVALS: usize = 24;
 const DEPTH_INTERVALS: usize = 14;
 /// Largest penetration of each zone along z, m; steep zones go deeper along z for the same load.
@@ -36,7 +36,7 @@ pub struct Patch<S> {
     pub angle: S,
     /// Place on the wheel from its tape circle, + to the field side, m.
     pub y_wheel: S,
-    /// Rolling radius, m.
+    /// Rolling radius of the unstrained wheel at the load-weighted middle of the patch, m.
     pub radius: S,
     /// Semi-axes of the equivalent ellipse along and across the rolling direction, m.
     pub a: S,
@@ -80,9 +80,8 @@ impl WheelZones {
     /// Splits the wheel where the rigid contact of a level wheel jumps: once at the start of the root, once at its end.
     pub fn new(pair: &PairGeometry, rail: &Profile) -> Result<Self, ContactError> {
         let wheel = &pair.wheel;
-        let tip = (0..wheel.y.len()).max_by(|&i, &j| wheel.z[i].total_cmp(&wheel.z[j])).unwrap_or(0);
-        let (tip, end) = (wheel.y[tip], wheel.y[wheel.y.len() - 1]);
-        let whole = Strips::new(wheel, [tip, end], 5e-5);
+        let whole = Strips::of_wheel(wheel, 5e-5)?;
+        let (tip, end) = (whole.y[0], whole.y[whole.y.len() - 1]);
         let mut gaps = Vec::new();
         let scan: Vec<RigidContact> = (0..=240)
             .filter_map(|i| {
@@ -117,33 +116,35 @@ impl ContactTable {
     /// Builds the tables in parallel.
     ///
     /// # Errors
-    /// What [`PairGeometry::placed_rail`] refuses, and profiles that never meet.
+    /// What [`PairGeometry::placed_rail`] refuses, a wheel without a flange, and profiles that never meet.
     pub fn build(pair: &PairGeometry, material: &Material) -> Result<Self, ContactError> {
         let rail = pair.placed_rail()?;
         let zones = WheelZones::new(pair, &rail)?;
         let axes = [Axis::new(SHIFT, SHIFT_INTERVALS), Axis::new(ROLL, ROLL_INTERVALS)];
         let depth = Axis::new([0.0, 1.0], DEPTH_INTERVALS);
         let nodes = axes[0].len * axes[1].len;
-        let columns: Vec<[(f64, f64, Vec<[f64; 6]>); 3]> = (0..nodes)
+        let columns: Vec<[Column; 3]> = (0..nodes)
             .into_par_iter()
             .map_init(Vec::new, |gaps, i| {
                 let (shift, roll) = (axes[0].node(i / axes[1].len), axes[1].node(i % axes[1].len));
                 [0, 1, 2].map(|z| {
                     PairGeometry::gaps(&rail, &zones.strips[z], shift, roll, gaps);
-                    let (gap, angle, rows) = column(&zones.strips[z], gaps, pair.radius, material, (DEPTH[z], depth));
-                    (gap, (angle - roll).tan().powi(2), rows)
+                    column(&zones.strips[z], gaps, (pair.radius, roll), material, (DEPTH[z], depth))
                 })
             })
             .collect();
-        if columns.iter().all(|c| c[0].0 >= FAR) {
+        if columns.iter().all(|c| c[0].gap >= FAR) {
             return Err(ContactError::NoContact { shift: SHIFT[0], roll: ROLL[0] });
         }
         Ok(Self {
             plane: axes,
-            touch: columns.iter().flat_map(|c| [c[0].0, c[1].0, c[2].0, c[0].1, c[1].1, c[2].1]).collect(),
+            touch: columns
+                .iter()
+                .flat_map(|c| [0, 1, 2].map(|z| c[z].gap).into_iter().chain([0, 1, 2].map(|z| c[z].tan2)))
+                .collect(),
             radius: pair.radius,
             space: [[axes[0], axes[1], depth]; 3],
-            load: [0, 1, 2].map(|z| columns.iter().flat_map(|c| c[z].2.iter().flatten().copied()).collect()),
+            load: [0, 1, 2].map(|z| columns.iter().flat_map(|c| c[z].rows.iter().flatten().copied()).collect()),
             borders: zones.borders,
         })
     }
@@ -211,16 +212,25 @@ fn within<S: Scalar>(what: &'static str, x: S, [least, most]: [f64; 2]) -> Resul
     Err(OutsideTable { what, value: x.value(), least, most })
 }
 
-/// Gap, angle on the wheel at first touch, and loads over the depth axis for one zone at one (shift, roll).
+/// One zone at one (shift, roll).
+struct Column {
+    /// Height w at first touch, m.
+    gap: f64,
+    /// Squared tangent of the angle of the contact plane in the track at first touch.
+    tan2: f64,
+    /// What the table holds, over the depth axis.
+    rows: Vec<[f64; 6]>,
+}
+
 fn column(
     strips: &Strips,
     gaps: &[f64],
-    radius: f64,
+    (radius, roll): (f64, f64),
     material: &Material,
     (deepest, axis): (f64, Axis),
-) -> (f64, f64, Vec<[f64; 6]>) {
+) -> Column {
     let Some(touch) = first_touch(strips, gaps, radius).filter(|t| t.gap < FAR) else {
-        return (FAR, 0.0, vec![[0.0; 6]; axis.len]);
+        return Column { gap: FAR, tan2: 0.0, rows: vec![[0.0; 6]; axis.len] };
     };
     let mut epsilon = 0.5;
     let mut penetration = Vec::with_capacity(gaps.len());
@@ -246,5 +256,5 @@ fn column(
             if matches!(k, 0 | 4 | 5) { line.max(0.5 * next[k]) } else { line }
         });
     }
-    (touch.gap, touch.angle, rows)
+    Column { gap: touch.gap, tan2: (touch.angle - roll).tan().powi(2), rows }
 }

@@ -40,11 +40,9 @@ pub struct RigidState {
 
 impl RigidWheelset {
     /// # Errors
-    /// What [`PairGeometry::placed_rail`] refuses.
+    /// What [`PairGeometry::placed_rail`] refuses, and a wheel without a flange.
     pub fn new(pair: &PairGeometry) -> Result<Self, ContactError> {
-        let wheel = &pair.wheel;
-        let tip = (0..wheel.y.len()).max_by(|&i, &j| wheel.z[i].total_cmp(&wheel.z[j])).unwrap_or(0);
-        let strips = Strips::new(wheel, [wheel.y[tip], wheel.y[wheel.y.len() - 1]], SPACING);
+        let strips = Strips::of_wheel(&pair.wheel, SPACING)?;
         Ok(Self { rail: pair.placed_rail()?, strips, radius: pair.radius, tape_circle: pair.tape_circle() })
     }
 
@@ -133,10 +131,13 @@ pub struct LoadedState {
 
 impl LoadedState {
     /// Load-weighted rolling radius of the right wheel less that of the left one, m.
+    ///
+    /// Radii are measured to the rail, that is less the penetration, which is how CONTACT gives them.
     pub fn rolling_radius_difference(&self) -> f64 {
         let [left, right] = self.wheels.map(|patches| {
             let force: f64 = patches.iter().map(|p| p.normal_force).sum();
-            patches.iter().map(|p| p.normal_force * p.radius).sum::<f64>() / force
+            let rail = |p: &Patch<f64>| p.radius - p.penetration;
+            patches.iter().filter(|p| p.active).map(|p| p.normal_force * rail(p)).sum::<f64>() / force
         });
         right - left
     }

@@ -26,6 +26,11 @@ impl From<[f64; 4]> for Lanes {
         Self(f64x4::new(x))
     }
 }
+impl From<f64> for Lanes {
+    fn from(x: f64) -> Self {
+        Self(f64x4::splat(x))
+    }
+}
 
 impl Mask for LanesMask {
     #[inline(always)]

@@ -8,6 +8,7 @@ use core::f64::consts::{LN_2, PI};
 ///
 /// The first nine numbers are table E.3. C33 was extrapolated to vanishing spin from runs of CONTACT (40 x 40 elements).
 #[rustfmt::skip]
+#[allow(clippy::approx_constant)] // 3.14 is Kalker's C22, not pi
 const TABLE: [(f64, [[f64; 3]; 3], f64); 19] = [
     (0.1, [[2.51, 3.31, 4.85], [2.51, 2.52, 2.53], [0.334, 0.473, 0.731]], 8.7937),
     (0.2, [[2.59, 3.37, 4.81], [2.59, 2.63, 2.66], [0.483, 0.603, 0.809]], 4.5152),
