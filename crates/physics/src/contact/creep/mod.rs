@@ -5,6 +5,8 @@ mod fastsim;
 mod kalker;
 mod linear;
 mod polach;
+#[cfg(test)]
+mod tests;
 
 pub use fastsim::MOST_ELEMENTS;
 pub use kalker::Kalker;
