@@ -109,7 +109,7 @@ def _passive_flange(summary: Summary) -> Claim:
         "lateral force "
     )
     reason += (
-        "before the 70 deg flank is reached. "
+        "before the 70 deg flank is reached: contact in the root where the paper speaks of the flange. "
         if steepest < FLANGE
         else "until, in the sharpest curves, the flank itself is reached. "
     )
@@ -124,7 +124,7 @@ def _passive_flange(summary: Summary) -> Claim:
         "The passive vehicle runs in flange contact.",
         f"max |y| {summary.list('passive', 'y_max_mm', 1)} mm; steepest contact {joined(angles, 0)} deg; "
         f"contact: {shown} ({_radii(summary)}).",
-        _verdict(angles, touched == len(contacts), touched > 0),
+        _verdict(angles, touched == len(contacts) and "flange" in contacts, touched > 0),
         reason,
     )
 
