@@ -12,9 +12,10 @@ import numpy as np
 
 from klingel.control.diagram import Diagram
 from klingel.control.discrete import Section, low_pass, slope_low_pass
-from klingel.control.feedforward import ContactDesign, SteeringGeometry, attack_angle_table
+from klingel.control.feedforward import GRAVITY, ContactDesign, SteeringGeometry, attack_angle_table
 from klingel.drives import OperatingPoint, operating_point
 from klingel.errors import InputError
+from klingel.track import CANT_BASE
 
 if TYPE_CHECKING:
     from klingel.track import Track
@@ -127,35 +128,56 @@ def database_curvature(d: Diagram, name: str, track: Track, position: str) -> st
     return d.lookup(name, position, *profile_of(track, "curvature"))
 
 
-def database_curve(d: Diagram, plant: Plant, w: Wheelset, track: Track, timing: Timing) -> str:
-    """Curvature [1/m] between a wheelset and its bogie's centre, from the track database.
+def twist_of(track: Track) -> tuple[list[float], list[float]]:
+    """Roll of the track per metre [rad/m] at arc lengths [m]; its steps at the ends of cant ramps are a metre long."""
+    places, values = [0.0], [0.0]
+    for start, segment in zip(track.starts, track.segments, strict=True):
+        slope = (segment.cant[1] - segment.cant[0]) / segment.length / CANT_BASE
+        if slope != values[-1] and start > 0.0:
+            places += [start - 0.5, start + 0.5]
+            values += [values[-1], slope]
+    return [*places, track.length], [*values, values[-1]]
 
-    It looks ahead by what the actuators and the computation take.
+
+def database_curve(d: Diagram, plant: Plant, w: Wheelset, track: Track, timing: Timing) -> tuple[str, str]:
+    """Curvature [1/m] between a wheelset and its bogie's centre, and roll rate of the track [rad/s] at the wheelset.
+
+    From the track database, looking ahead by what the actuators and the computation take.
     """
     preview = plant.actuator_lag + timing.computation_samples * timing.sample_time
-    terms: dict[str, float | str] = {d.measure(f"{w.name}.s"): 1.0, d.measure(SPEED): preview}
-    position = d.sum(f"{w.name}.ahead", terms, bias=-0.5 * w.lead * plant.geometry.half_wheelbase)
-    return database_curvature(d, f"{w.name}.rho", track, position)
+    speed = d.measure(SPEED)
+    terms: dict[str, float | str] = {d.measure(f"{w.name}.s"): 1.0, speed: preview}
+    here = d.sum(f"{w.name}.ahead", terms)
+    middle = d.sum(f"{w.name}.middle", {here: 1.0}, bias=-0.5 * w.lead * plant.geometry.half_wheelbase)
+    twist = d.lookup(f"{w.name}.twist", here, *twist_of(track))
+    return database_curvature(d, f"{w.name}.rho", track, middle), d.product(f"{w.name}.roll_rate", twist, speed)
 
 
 def sense_curve(d: Diagram, plant: Plant, contact: ContactDesign, timing: Timing, *, frequency: float) -> None:
-    """Curvature [1/m] at both bogies and its slope [1/(m s)] from their gyros, after the errors `wd.error` are known.
+    """Curvature [1/m], its slope [1/(m s)] and roll rate [rad/s] of the track at both bogies, from their own sensors.
+
+    To be called after `sense_inertia` and when the errors `wd.error` are known.
 
     A gyro cannot tell the turning of the track from that of the bogie on it, and the second follows from the steering
     itself: a feedforward of the bare yaw rate is a loop with gain one. So the bogie's own turning is taken out:
     psi_b = (y1 - y2)/(2 a) with the displacements that the speed differences tell, y V gamma/r0^2 = wd - lambda r/r0.
-    Both pass low-passes, at `frequency` [Hz] the track's and at four times that the bogie's own.
+    What gravity adds to V r in the plane of the track is its roll. All pass low-passes, at `frequency` [Hz] the track's
+    and at four times that the bogie's own.
     """
     ts = timing.sample_time
     per_error = -(plant.radius**2) / (contact.conicity * 2.0 * plant.geometry.half_wheelbase)
     gain = scheduled(d, "bogie_yaw.gain", lambda v: per_error / v)
     minus = d.sum("bogie_yaw.minus", {gain: -1.0})
+    level = 1.0 / (1.0 + plant.geometry.sway.bogie)
     for bogie in ("bogie1", "bogie2"):
         first, second = (f"{bogie}.wheelset{i}.wd.error" for i in (1, 2))
         yaw = d.sum(f"{bogie}.psi", {first: gain, second: minus})
         own = d.filter(f"{bogie}.turning", yaw, [slope_low_pass(4.0 * frequency, sample_time=ts)])
         gyro = d.delay(f"{bogie}.gyro", d.measure(f"{bogie}.yaw_rate"), timing.sensor_samples)
         track = d.sum(f"{bogie}.track_rate", {gyro: 1.0, own: -1.0})
+        roll = {d.product(f"{bogie}.V.track_rate", d.measure(SPEED), track): 1.0, f"{bogie}.ay.now": -level}
+        angle = d.sum(f"{bogie}.track_roll", {s: k / GRAVITY for s, k in roll.items()})
+        d.filter(f"{bogie}.roll_rate", angle, [slope_low_pass(frequency, sample_time=ts)])
         for name, section in (("rho", low_pass), ("rho.slope", slope_low_pass)):
             rate = d.filter(f"{bogie}.{name}.rate", track, [section(frequency, sample_time=ts)])
             d.quotient(f"{bogie}.{name}", rate, d.measure(SPEED), floor=SPEED_GRID[0])
@@ -176,7 +198,7 @@ def sense_inertia(d: Diagram, plant: Plant, timing: Timing, *, frequency: float)
     """Mean lateral force [N] of the wheelsets of each bogie and the yaw-damper moment [N m], by inertial sensors.
 
     Body and bogies weigh what they accelerate: m_b a/4 +- I_z r'/(4 L) from the body's accelerometer and gyro, and the
-    bogie's own mass; c (r_bogie - r_body) from the gyros.
+    bogie's own mass; c (r_bogie - r_body) from the gyros. The roll on the springs is taken out of the accelerations.
     """
     g, ts = plant.geometry, timing.sample_time
 
@@ -187,16 +209,28 @@ def sense_inertia(d: Diagram, plant: Plant, timing: Timing, *, frequency: float)
     ay = sense("body.ay", "body.lateral_acceleration", low)
     turn = sense("body.turn", "body.yaw_rate", slope_low_pass(frequency, sample_time=ts))
     rate = sense("body.rate", "body.yaw_rate", low)
+    weight = g.body_mass / 4.0 / (1.0 + g.sway.body)
     for bogie, front in (("bogie1", 1.0), ("bogie2", -1.0)):
         own = sense(f"{bogie}.ay", f"{bogie}.lateral_acceleration", low)
         leverage = front * g.body_yaw_inertia / (4.0 * g.half_bogie_spacing)
-        d.sum(f"{bogie}.Y", {ay: g.body_mass / 4.0, turn: leverage, own: g.bogie_mass / 2.0})
+        d.sum(f"{bogie}.Y", {ay: weight, turn: leverage, own: g.bogie_mass / 2.0 / (1.0 + g.sway.bogie)})
         relative = sense(f"{bogie}.rate", f"{bogie}.yaw_rate", low)
         d.sum(f"{bogie}.M.damper", {relative: g.yaw_damping, rate: -g.yaw_damping})
 
 
-def steering_feedforward(d: Diagram, plant: Plant, contact: ContactDesign, w: Wheelset, rho: str) -> str:
-    """M = kpsi [+-a rho + alpha_Y - psi_b] [N m] of a wheelset, after `sense_inertia`."""
+def gyroscopic_moment(d: Diagram, plant: Plant, w: Wheelset, roll_rate: str) -> str:
+    """The yaw moment [N m] that turns the spinning wheels with a track that rolls: -H p, H their angular momentum."""
+    momentum = scheduled(d, f"{w.name}.momentum", lambda v: -plant.geometry.spin_momentum * v)
+    return d.product(f"{w.name}.M.gyroscopic", momentum, roll_rate)
+
+
+def steering_feedforward(
+    d: Diagram, plant: Plant, contact: ContactDesign, w: Wheelset, *, rho: str, roll_rate: str, gyroscopic: str
+) -> str:
+    """M = kpsi [+-a rho + alpha_Y - psi_b - h p/V] - H p [N m] of a wheelset, after `sense_inertia`.
+
+    On a cant ramp the bogie follows the axles, which at their height h run askew of the rails by h times the twist p/V.
+    """
     g = plant.geometry
     bogie = w.bogie_name
     pair: dict[str, float | str] = {
@@ -206,7 +240,9 @@ def steering_feedforward(d: Diagram, plant: Plant, contact: ContactDesign, w: Wh
     force = d.sum(f"{w.name}.Y", {f"{bogie}.Y": 1.0, **pair})
     alpha = d.lookup(f"{w.name}.alpha", force, *attack_angle_table(g, contact))
     radial = w.lead * g.half_wheelbase - g.bogie_yaw(w.bogie)
-    return d.sum(f"{w.name}.M.feedforward", {rho: g.yaw_stiffness * radial, alpha: g.yaw_stiffness})
+    askew = scheduled(d, f"{w.name}.askew", lambda v: -g.yaw_stiffness * g.primary_height / v)
+    terms: dict[str, float | str] = {rho: g.yaw_stiffness * radial, alpha: g.yaw_stiffness}
+    return d.sum(f"{w.name}.M.feedforward", {**terms, roll_rate: askew, gyroscopic: 1.0})
 
 
 def command_steering(d: Diagram, plant: Plant, w: Wheelset, moment: str, timing: Timing) -> None:

@@ -22,7 +22,8 @@ class ContactDesign:
 
     longitudinal_creep, lateral_creep: f11, f22 of one wheel at `load` [N]: Kalker's coefficients on the Hertz ellipse
     of S1002 on 60E1 at 1:40; they scale with load^(2/3). conicity: gamma, effective slope at 1 to 2 mm. friction: 0.35,
-    a dry rail; on a more slippery one the feedback adds what is missing.
+    a dry rail; on a more slippery one the feedback adds what is missing. inclination: lateral force without any attack
+    angle over the difference of the two wheel loads, by the contact angle near the tape circle and by spin creepage.
     """
 
     longitudinal_creep: float = 10.0e6
@@ -30,6 +31,52 @@ class ContactDesign:
     load: float = 54.5e3
     conicity: float = 0.2
     friction: float = 0.35
+    inclination: float = 0.075
+
+
+@dataclass(frozen=True)
+class Sway:
+    """g times roll over lateral acceleration, of the body and of a bogie frame against the track [-]."""
+
+    body: float
+    bogie: float
+
+    @classmethod
+    def of(cls, vehicle: Vehicle, *, acceleration: float = 2.0) -> Sway:
+        """Quasi-static roll on the springs at a lateral acceleration [m/s2], with the shifted weight of the body.
+
+        The acceleration, that of a cant deficiency of 300 mm, matters because of the lateral stops.
+        """
+        body, bogie, p, s = vehicle.body, vehicle.bogie, vehicle.primary, vehicle.secondary
+        shift = _body_shift(vehicle, body.mass * acceleration / 2.0)
+        arm, weight = body.height - s.height, body.mass * GRAVITY
+        stiffness = (
+            4.0 * (s.stiffness.z * s.half_spacing**2 + s.bending_stiffness) + 2.0 * vehicle.anti_roll_bar.stiffness
+        )
+        upper = (body.mass * acceleration * arm + weight * shift) / (stiffness - weight * arm)
+        moment = body.mass * acceleration * (body.height - p.height) + weight * (shift + upper * arm)
+        moment += 2.0 * bogie.mass * acceleration * (bogie.height - p.height)
+        lower = moment / (8.0 * p.stiffness.z * p.half_spacing**2)
+        return cls(body=GRAVITY * (upper + lower) / acceleration, bogie=GRAVITY * lower / acceleration)
+
+
+def _body_shift(vehicle: Vehicle, force: float) -> float:
+    """Lateral deflection [m] of the secondary suspension of one bogie, springs and stop, under a force [N]."""
+    stop, spring = vehicle.lateral_stop, 2.0 * vehicle.secondary.stiffness.y
+    deflections = np.asarray(stop.deflection)
+    return float(np.interp(force, spring * deflections + np.asarray(stop.force), deflections))
+
+
+def spin_momentum(vehicle: Vehicle) -> float:
+    """Angular momentum of a wheelset's turning parts about its axle over the speed V [kg m].
+
+    The rotors turn against the wheels (one gear stage), 1/N times as fast.
+    """
+    if vehicle.axle_bridge is None:
+        assert vehicle.wheelset is not None
+        return vehicle.wheelset.inertia.spin / vehicle.geometry.wheel_radius
+    rotor = vehicle.drive.rotor_inertia / vehicle.drive.gear_ratio if vehicle.drive else 0.0
+    return 2.0 * (vehicle.axle_bridge.wheel.inertia.spin - rotor) / vehicle.geometry.wheel_radius
 
 
 @dataclass(frozen=True)
@@ -38,7 +85,9 @@ class SteeringGeometry:
 
     yaw_stiffness: kpsi of one wheelset's primary suspension [N m/rad]; lateral_stiffness: of one wheelset [N/m];
     secondary_yaw: kpsi of one bogie's secondary suspension [N m/rad]; yaw_damping: of its yaw dampers [N m s/rad];
-    mass, centre_height: of the whole vehicle; body_yaw_inertia about its centre of mass [kg m2].
+    mass, centre_height: of the whole vehicle; body_yaw_inertia about its centre of mass [kg m2]. sway: g times the roll
+    of body and bogie against the track over its lateral acceleration; sensors fixed to them read that much more.
+    spin_momentum: of a wheelset's turning parts over its speed V [kg m]; primary_height above the rails.
     """
 
     half_wheelbase: float
@@ -52,6 +101,9 @@ class SteeringGeometry:
     yaw_damping: float
     body_mass: float
     body_yaw_inertia: float
+    sway: Sway
+    spin_momentum: float
+    primary_height: float
 
     @property
     def bogie_mass(self) -> float:
@@ -76,6 +128,9 @@ class SteeringGeometry:
             yaw_damping=2.0 * d.damping * d.half_spacing**2 if (d := vehicle.yaw_damper) else 0.0,
             body_mass=vehicle.body.mass,
             body_yaw_inertia=vehicle.body.inertia.yaw,
+            sway=Sway.of(vehicle),
+            spin_momentum=spin_momentum(vehicle),
+            primary_height=p.height,
         )
 
     def pair_share(self, wheelset: int) -> float:
@@ -113,9 +168,10 @@ def attack_angle(force: float, geometry: SteeringGeometry, contact: ContactDesig
     The wheel loads are those of the cant deficiency that Y stands for: m/4 a_nc = Y, with the moment of a_nc about the
     rails at the height of the vehicle's centre of mass. Linear for small forces: Y/(2 f22).
 
-    >>> geometry = SteeringGeometry(1.28, 9.5, 0.75, 45630.0, 1.42, 3.0e6, 7.77e6, 3.2e5, 0.0, 32e3, 1.97e6)
+    >>> from klingel import library
+    >>> geometry = SteeringGeometry.of(library.vehicle("mechatronic_irw"))
     >>> round(1e3 * attack_angle(1e3, geometry, ContactDesign()), 3)
-    0.056
+    0.048
     """
     if force == 0.0:
         return 0.0
@@ -124,8 +180,10 @@ def attack_angle(force: float, geometry: SteeringGeometry, contact: ContactDesig
     loads = (static + transfer, max(static - transfer, 0.05 * static))
     wheels = [(contact.lateral_creep * (n / contact.load) ** (2.0 / 3.0), contact.friction * n) for n in loads]
 
+    carried = contact.inclination * (loads[0] - loads[1])
+
     def missing(angle: float) -> float:
-        return sum(creep_force(angle, f22, limit) for f22, limit in wheels) - abs(force)
+        return carried + sum(creep_force(angle, f22, limit) for f22, limit in wheels) - abs(force)
 
     saturated = max(3.0 * limit / f22 for f22, limit in wheels)
     if missing(saturated) <= 0.0:

@@ -18,6 +18,7 @@ from klingel.control.common import (
     command_steering,
     database_curvature,
     database_curve,
+    gyroscopic_moment,
     scheduled,
     sense_curve,
     sense_inertia,
@@ -136,9 +137,13 @@ class IRWLike:
         """M = feedforward + K (1 + 1/(Ti s)) (lambda r/r0 - wd)."""
         if self.curvature == "gyro":
             rho = sensed_curve(d, plant, w, frequency=self.gyro_frequency, extrapolation=self.extrapolation)
+            roll_rate = f"{w.bogie_name}.roll_rate"
         else:
-            rho = database_curve(d, plant, w, track, self.timing)
+            rho, roll_rate = database_curve(d, plant, w, track, self.timing)
         error, limit = f"{w.name}.wd.error", 0.5 * plant.moment_max
         feedback = d.pi(f"{w.name}.M.feedback", error, proportional=proportional, integral=integral, limit=limit)
-        feedforward = steering_feedforward(d, plant, self.contact, w, rho)
+        gyroscopic = gyroscopic_moment(d, plant, w, roll_rate)
+        feedforward = steering_feedforward(
+            d, plant, self.contact, w, rho=rho, roll_rate=roll_rate, gyroscopic=gyroscopic
+        )
         command_steering(d, plant, w, d.sum(f"{w.name}.M", {feedforward: 1.0, feedback: 1.0}), self.timing)

@@ -18,6 +18,7 @@ from klingel.control.common import (
     command_steering,
     database_curvature,
     database_curve,
+    gyroscopic_moment,
     scheduled,
     sense_inertia,
     speed_difference,
@@ -118,11 +119,14 @@ class SolidLike:
         command_motors(d, plant, w, d.sum(f"{w.name}.u", {feedback: 1.0, turn: back_emf}), self.timing)
 
     def _yaw_moment_loop(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
-        """Integral control of the total yaw moment on the wheelset to zero, around the feedforward."""
-        rho = database_curve(d, plant, w, track, self.timing)
-        feedforward = steering_feedforward(d, plant, self.contact, w, rho)
+        """Integral control of the total yaw moment on the wheelset to what its spin needs, around the feedforward."""
+        rho, roll_rate = database_curve(d, plant, w, track, self.timing)
+        gyroscopic = gyroscopic_moment(d, plant, w, roll_rate)
+        feedforward = steering_feedforward(
+            d, plant, self.contact, w, rho=rho, roll_rate=roll_rate, gyroscopic=gyroscopic
+        )
         total = d.delay(f"{w.name}.M.total", d.measure(f"{w.name}.yaw_moment"), self.timing.sensor_samples)
-        error = d.sum(f"{w.name}.M.error", {total: -1.0})
+        error = d.sum(f"{w.name}.M.error", {gyroscopic: 1.0, total: -1.0})
         crossover = 2.0 * math.pi * self.yaw_frequency
         feedback = d.pi(
             f"{w.name}.M.feedback", error, proportional=0.0, integral=crossover, limit=0.5 * plant.moment_max
