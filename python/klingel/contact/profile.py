@@ -35,7 +35,7 @@ class Profile:
     Errors: InputError with every problem.
 
     >>> float(Profile.s1002().depth(-0.05).round(4))
-    0.0266
+    0.0269
     """
 
     name: str
