@@ -39,11 +39,32 @@ pub fn wheelset(wheel: Value, inclination: f64, track: Value, speed: f64, durati
     })
 }
 
+/// A wheel with a coned tread and a flange behind a root so wide that tread, root and flange follow one another on the
+/// rail: from the field side along the cone to y = -32 mm, an arc of 25 mm up to 68 degrees, 6 mm of flank, a round tip.
+pub fn cone(slope: f64) -> Value {
+    let (mut points, mut angle) = (vec![[0.06, -0.06 * slope]], slope.atan());
+    let mut go = |length: f64, curvature: f64| {
+        let step = length / (length / 2e-4).ceil();
+        for _ in 0..(length / step).round() as usize {
+            let [y, z] = points[points.len() - 1];
+            let middle = angle + 0.5 * step * curvature;
+            points.push([y - step * middle.cos(), z + step * middle.sin()]);
+            angle += step * curvature;
+        }
+    };
+    let (flank, turned) = (68.0_f64.to_radians(), slope.atan());
+    go(0.092 / turned.cos(), 0.0);
+    go(0.025 * (flank - turned), 1.0 / 0.025);
+    go(0.006, 0.0);
+    go(0.012 * (flank + 0.5), -1.0 / 0.012);
+    points.reverse();
+    let column = |c: usize| points.iter().map(|p| p[c]).collect::<Vec<f64>>();
+    json!({ "points": { "y": column(0), "z": column(1) } })
+}
+
 /// Left and right wheel of a body.
 pub fn wheels(body: &str, rotors: [&str; 2]) -> Value {
-    let wheel = |side: &str, rotor: &str| {
-        json!({ "name": format!("{body}.{side}"), "body": body, "rotor": rotor, "side": side, "pair": 0, "friction": 0.35 })
-    };
+    let wheel = |side: &str, rotor: &str| json!({ "name": format!("{body}.{side}"), "body": body, "rotor": rotor, "side": side, "pair": 0, "friction": 0.35 });
     json!([wheel("left", rotors[0]), wheel("right", rotors[1])])
 }
 
@@ -114,7 +135,9 @@ impl Plant {
         let mut work = Workspace::<Dual<WIDE>>::new(&self.model);
         let mut dx = vec![Dual::<WIDE>::default(); n];
         for first in (0..n).step_by(WIDE) {
-            let seed = |i: usize| if i >= first && i < first + WIDE { Dual::variable(x[i], i - first) } else { Dual::constant(x[i]) };
+            let seed = |i: usize| {
+                if i >= first && i < first + WIDE { Dual::variable(x[i], i - first) } else { Dual::constant(x[i]) }
+            };
             let dual: Vec<_> = (0..n).map(seed).collect();
             rates(&self.model, &dual, &self.model.inputs, &mut work, &mut dx).expect("wheels on their rails");
             for d in 0..WIDE.min(n - first) {

@@ -25,7 +25,7 @@ fn pair(gravity: f64, track: Value) -> Value {
         .enumerate()
         .map(|(i, (x, y))| {
             json!({ "name": format!("spring{i}"), "joint": { "a": "lower", "b": "upper", "point": [x, y, -1.0] },
-                    "stiffness": STIFFNESS, "preload": PRELOAD, "rotational_stiffness": [ROTATIONAL; 3] })
+                    "stiffness": STIFFNESS, "preload": PRELOAD, "rotational_stiffness": [ROTATIONAL, ROTATIONAL, ROTATIONAL] })
         })
         .collect();
     case
@@ -59,9 +59,8 @@ fn gravitational(plant: &Plant) -> f64 {
 fn elastic(plant: &Plant) -> f64 {
     let (a, b) = (&plant.work.motions[0].R_WB.0, &plant.work.motions[1].R_WB.0);
     let trace: f64 = (0..3).map(|i| (0..3).map(|k| a[k][i] * b[k][i]).sum::<f64>()).sum();
-    let stretched = |u: Vec3<f64>| -> f64 {
-        (0..3).map(|i| 0.5 * STIFFNESS[i] * u.0[i].powi(2) - PRELOAD[i] * u.0[i]).sum()
-    };
+    let stretched =
+        |u: Vec3<f64>| -> f64 { (0..3).map(|i| 0.5 * STIFFNESS[i] * u.0[i].powi(2) - PRELOAD[i] * u.0[i]).sum() };
     let twisted = ROTATIONAL * 0.5 * (3.0 - trace);
     plant.work.joints.iter().map(|j| stretched(j.u) + twisted).sum()
 }

@@ -52,7 +52,8 @@ fn a_level_top_precesses_under_its_weight() {
     let (weight, arm) = (2000.0, 0.7);
     for side in [1.0, -1.0] {
         let mut case = top(0.0, straight(100.0));
-        let stand = json!({ "name": "stand", "mass": 1e15, "inertia": [1e15, 1e15, 1e15], "position": [0.0, 0.0, -0.5] });
+        let stand =
+            json!({ "name": "stand", "mass": 1e15, "inertia": [1e15, 1e15, 1e15], "position": [0.0, 0.0, -0.5] });
         case["bodies"].as_array_mut().expect("bodies").push(stand);
         case["bushings"] = json!([{ "name": "weight", "preload": [0.0, 0.0, weight],
             "joint": { "a": "stand", "b": "top", "point": [0.0, side * arm, -0.5] } }]);
@@ -89,9 +90,9 @@ fn released_from_rest_the_top_precesses_on_average() {
     let precession = weight * arm / (ROTOR * SPIN);
     let (mut time, mut lowest) = (0.0, 0.0_f64);
     plant.advance(&mut x, 5e-4, 4000, |_, x| {
-        // linear theory: a cycloid; its roll is W l A/h^2 (1 - cos), 0.6 % of a radian, so its yaw is exact to 1e-5
+        // linear theory: a cycloid; its roll is W l A/h^2 (1 - cos), up to 12 mrad, whose square it neglects
         let expected = precession * (time - (nutation * time).sin() / nutation);
-        assert!((x[yaw] - expected).abs() < 2e-5, "{} for {expected}", x[yaw]);
+        assert!((x[yaw] - expected).abs() < 2e-4 * expected + 1e-5, "{} for {expected}", x[yaw]);
         lowest = lowest.max(x[roll]);
         time += 5e-4;
     });

@@ -1,7 +1,7 @@
 //! A single wheelset without suspension: its weight, Klingel's wave, the free rolling line of a curve.
 //! The derivations are in docs/theory/wheelset.md.
 
-use crate::common::{Plant, channel, run, straight, track, wheelset};
+use crate::common::{Plant, channel, cone, run, straight, track, wheelset};
 use serde_json::{Value, json};
 
 /// Slope of the coned wheel; the rail leans in by as much, so it is touched on its 300 mm arc.
@@ -10,7 +10,10 @@ const CONE: f64 = 0.05;
 const RAIL: f64 = 0.3;
 
 fn coned(track: Value, speed: f64, duration: f64) -> Value {
-    wheelset(json!({ "cone": CONE }), CONE, track, speed, duration)
+    let mut case = wheelset(cone(CONE), CONE, track, speed, duration);
+    // brings the tape circles over the middle of the rails
+    case["contact_pairs"][0]["flange_back"] = json!(1.379);
+    case
 }
 
 /// Half distance of the contacts and rolling radius of the centred wheelset \[m\].
