@@ -11,7 +11,7 @@ use klingel_physics::math::Vec3;
 /// Name and unit of one channel.
 pub type Channel = (String, &'static str);
 
-const BODY: [(&str, &str); 13] = [
+const BODY: [(&str, &str); 14] = [
     ("s", "m"),
     ("y", "m"),
     ("z", "m"),
@@ -21,6 +21,7 @@ const BODY: [(&str, &str); 13] = [
     ("speed", "m/s"),
     ("lateral_acceleration", "m/s2"),
     ("vertical_acceleration", "m/s2"),
+    ("roll_rate", "rad/s"),
     ("yaw_rate", "rad/s"),
     ("curvature", "1/m"),
     ("cant", "m"),
@@ -107,6 +108,7 @@ fn body_row(
         q.v.x(),
         felt_B.y(),
         felt_B.z() + m.gravity,
+        motion.w_B.x(),
         motion.w_B.z(),
         motion.track.curvature,
         m.cant_base * motion.track.cant_angle.sin(),
