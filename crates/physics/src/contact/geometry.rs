@@ -64,17 +64,17 @@ impl PairGeometry {
         Ok(rail.map(|[y, z, slope]| [y + offset, z - height, slope]))
     }
 
-    /// The arrays of the gap of every wheel point of `strips` above the placed rail, at w = 0; infinite where there is no rail.
-    pub(super) fn gaps(rail: &Profile, strips: &Strips, shift: f64, roll: f64, gaps: &mut Vec<f64>) {
+    /// The gap of every wheel point of `strips` above the placed rail, at w = 0; infinite where there is no rail.
+    pub(super) fn gaps(rail: &Profile, strips: &Strips, shift: f64, roll: f64) -> Vec<f64> {
         let (sin, cos) = roll.sin_cos();
         let (first, end) = (rail.y[0], rail.y[rail.y.len() - 1]);
         let mut k = 0;
-        gaps.clear();
-        gaps.extend(strips.y.iter().zip(&strips.z).map(|(&y_w, &z_w)| {
+        let gap = |(&y_w, &z_w): (&f64, &f64)| {
             let y = shift + y_w * cos - z_w * sin;
             if !(y > first && y < end) {
                 return f64::INFINITY;
             }
+            // The points come in the order of the rail's, so the interval is close to the last one.
             while rail.y[k + 1] < y {
                 k += 1;
             }
@@ -82,7 +82,8 @@ impl PairGeometry {
                 k -= 1;
             }
             rail.within(k, y).0 - (y_w * sin + z_w * cos)
-        }));
+        };
+        strips.y.iter().zip(&strips.z).map(gap).collect()
     }
 }
 

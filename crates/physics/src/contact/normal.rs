@@ -80,7 +80,7 @@ pub(super) fn zone_load(
         state = Some((e, across));
         let change = e.epsilon - *epsilon;
         *epsilon = e.epsilon;
-        if change.abs() < 1e-9 {
+        if change.abs() < 1e-7 {
             break;
         }
     }

@@ -1,5 +1,5 @@
 //! Tensor products of uniform quadratic B-splines: C1, positive, three nodes an axis.
-//! The node values are the coefficients, so a curve f is smoothed by f'' h^2 / 8 and never overshoots.
+//! Node values taken as coefficients smooth a curve f by f'' h^2 / 8 and never overshoot; sharpened ones follow parabolas.
 
 /// An evenly spaced axis with one node beyond either end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +35,22 @@ impl Axis {
             first: nearest,
             weight: [0.5 * l * l, 0.75 - f * f, 0.5 * r * r],
             slope: [-l * k, -2.0 * f * k, r * k],
+        }
+    }
+}
+
+/// The coefficients whose spline follows the node values of column `k` to third order: a parabola exactly.
+///
+/// Each axis in turn takes off an eighth of the second difference, which is what the spline smooths away.
+pub(super) fn sharpen(nodes: &mut [f64], columns: usize, k: usize, axes: &[Axis; 2]) {
+    let (stride, lines) = ([axes[1].len * columns, columns], [axes[0].len, axes[1].len]);
+    for axis in 0..2 {
+        for line in 0..lines[1 - axis] {
+            let at = |i: usize| line * stride[1 - axis] + i * stride[axis] + k;
+            let values: Vec<f64> = (0..lines[axis]).map(|i| nodes[at(i)]).collect();
+            for (i, v) in values.windows(3).enumerate() {
+                nodes[at(i + 1)] -= 0.125 * (v[0] - 2.0 * v[1] + v[2]);
+            }
         }
     }
 }
@@ -83,6 +99,23 @@ pub(super) fn plane_slopes<const K: usize>(nodes: &[f64], axes: &[Axis; 2], x: [
 /// Six values over three axes, the last one fastest.
 #[inline]
 pub(super) fn space(nodes: &[f64], axes: &[Axis; 3], x: [f64; 3]) -> [f64; 6] {
+    #[cfg(target_arch = "x86_64")]
+    {
+        /// The same operations for wider registers; without fused operations the result is the same bitwise.
+        #[target_feature(enable = "avx2")]
+        fn wide(nodes: &[f64], axes: &[Axis; 3], x: [f64; 3]) -> [f64; 6] {
+            space_any(nodes, axes, x)
+        }
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the feature was just found.
+            return unsafe { wide(nodes, axes, x) };
+        }
+    }
+    space_any(nodes, axes, x)
+}
+
+#[inline(always)]
+fn space_any(nodes: &[f64], axes: &[Axis; 3], x: [f64; 3]) -> [f64; 6] {
     let (u, v, t) = (axes[0].stencil(x[0]), axes[1].stencil(x[1]), axes[2].stencil(x[2]));
     let (step, stride) = (axes[2].len * 6, axes[1].len * axes[2].len * 6);
     let line = rows(nodes, u.first * stride + v.first * step + t.first * 6, stride, step, &u.weight, &v.weight);
@@ -113,6 +146,19 @@ fn along(line: &[f64; 18], w: &[f64; 3]) -> [f64; 6] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sharpened_nodes_follow_a_parabola() {
+        let axes = [Axis::new([0.0, 2.0], 8), Axis::new([-1.0, 1.0], 6)];
+        let f = |x: f64, y: f64| 1.0 + x * x - 3.0 * x * y + 2.0 * y * y;
+        let mut nodes: Vec<f64> = (0..axes[0].len * axes[1].len)
+            .map(|i| f(axes[0].node(i / axes[1].len), axes[1].node(i % axes[1].len)))
+            .collect();
+        sharpen(&mut nodes, 1, 0, &axes);
+        for (x, y) in [(0.3, 0.1), (1.1, -0.45), (1.62, 0.5)] {
+            assert!((plane::<1>(&nodes, &axes, [x, y])[0] - f(x, y)).abs() < 1e-12);
+        }
+    }
 
     #[test]
     fn planes_are_exact_and_slopes_are_those_of_the_values() {

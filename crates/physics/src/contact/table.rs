@@ -3,7 +3,7 @@
 
 use super::geometry::{RigidContact, Strips, first_touch};
 use super::normal::{Zone, zone_load};
-use super::spline::{Axis, plane, plane_slopes, space, space_slopes};
+use super::spline::{Axis, plane, plane_slopes, sharpen, space, space_slopes};
 use super::{ContactError, Material, PairGeometry, Profile};
 use crate::{Mask, Scalar};
 use rayon::prelude::*;
@@ -20,6 +20,9 @@ const DEPTH: [f64; 3] = [4e-4, 8e-4, 1.4e-3];
 const STRIP: [f64; 3] = [1e-4, 5e-5, 5e-5];
 /// A zone that finds no rail below it counts as this far away, m.
 const FAR: f64 = 0.03;
+/// A zone farther than this behind the first one to touch has no loads: before it is reached the others are deeper
+/// than their tables; 0.1 mm of shift move it by less than 0.3 mm.
+const REACH: f64 = 3e-3;
 /// Names of the zones, in the order of the tables.
 pub const ZONES: [Zone; 3] = [Zone::Tread, Zone::Root, Zone::Flange];
 
@@ -82,10 +85,9 @@ impl WheelZones {
         let wheel = &pair.wheel;
         let whole = Strips::of_wheel(wheel, 5e-5)?;
         let (tip, end) = (whole.y[0], whole.y[whole.y.len() - 1]);
-        let mut gaps = Vec::new();
         let scan: Vec<RigidContact> = (0..=240)
             .filter_map(|i| {
-                PairGeometry::gaps(rail, &whole, f64::from(i) * 5e-5, 0.0, &mut gaps);
+                let gaps = PairGeometry::gaps(rail, &whole, f64::from(i) * 5e-5, 0.0);
                 first_touch(&whole, &gaps, pair.radius)
             })
             .collect();
@@ -125,23 +127,34 @@ impl ContactTable {
         let nodes = axes[0].len * axes[1].len;
         let columns: Vec<[Column; 3]> = (0..nodes)
             .into_par_iter()
-            .map_init(Vec::new, |gaps, i| {
+            .map(|i| {
                 let (shift, roll) = (axes[0].node(i / axes[1].len), axes[1].node(i % axes[1].len));
+                let gaps = zones.strips.each_ref().map(|strips| PairGeometry::gaps(&rail, strips, shift, roll));
+                let touch = [0, 1, 2].map(|z| first_touch(&zones.strips[z], &gaps[z], pair.radius));
+                let lowest = touch.iter().flatten().fold(FAR, |low, t| low.min(t.gap));
                 [0, 1, 2].map(|z| {
-                    PairGeometry::gaps(&rail, &zones.strips[z], shift, roll, gaps);
-                    column(&zones.strips[z], gaps, (pair.radius, roll), material, (DEPTH[z], depth))
+                    let column = Column::new(touch[z], roll, depth.len);
+                    if column.gap > lowest + REACH {
+                        return column;
+                    }
+                    column.loaded(&zones.strips[z], &gaps[z], (pair.radius, material), (DEPTH[z], depth))
                 })
             })
             .collect();
         if columns.iter().all(|c| c[0].gap >= FAR) {
             return Err(ContactError::NoContact { shift: SHIFT[0], roll: ROLL[0] });
         }
+        let mut touch: Vec<f64> = columns
+            .iter()
+            .flat_map(|c| [0, 1, 2].map(|z| c[z].gap).into_iter().chain([0, 1, 2].map(|z| c[z].tan2)))
+            .collect();
+        // A micrometre of the gap is a percent of the load.
+        for zone in 0..3 {
+            sharpen(&mut touch, 6, zone, &axes);
+        }
         Ok(Self {
             plane: axes,
-            touch: columns
-                .iter()
-                .flat_map(|c| [0, 1, 2].map(|z| c[z].gap).into_iter().chain([0, 1, 2].map(|z| c[z].tan2)))
-                .collect(),
+            touch,
             radius: pair.radius,
             space: [[axes[0], axes[1], depth]; 3],
             load: [0, 1, 2].map(|z| columns.iter().flat_map(|c| c[z].rows.iter().flatten().copied()).collect()),
@@ -222,39 +235,44 @@ struct Column {
     rows: Vec<[f64; 6]>,
 }
 
-fn column(
-    strips: &Strips,
-    gaps: &[f64],
-    (radius, roll): (f64, f64),
-    material: &Material,
-    (deepest, axis): (f64, Axis),
-) -> Column {
-    let Some(touch) = first_touch(strips, gaps, radius).filter(|t| t.gap < FAR) else {
-        return Column { gap: FAR, tan2: 0.0, rows: vec![[0.0; 6]; axis.len] };
-    };
-    let mut epsilon = 0.5;
-    let mut penetration = Vec::with_capacity(gaps.len());
-    // Only strips that can come into contact at the largest depth.
-    let near = |g: &f64| *g < touch.gap + deepest * 1.3;
-    let first = gaps.iter().position(near).unwrap_or(0);
-    let end = gaps.iter().rposition(near).map_or(first, |e| e + 1);
-    let strips = strips.part(first, end);
-    let mut rows = vec![[0.0; 6]; axis.len];
-    for (i, row) in rows.iter_mut().enumerate().rev().take_while(|(i, _)| *i > 1) {
-        let d = axis.node(i).powi(2) * deepest;
-        penetration.clear();
-        penetration.extend(gaps[first..end].iter().zip(&strips.cos).map(|(g, cos)| (touch.gap + d - g) * cos));
-        let Some(l) = zone_load(&strips, &penetration, radius, material.pair_modulus(), &mut epsilon) else { continue };
-        *row = [l.force / d.powf(1.5), l.angle, l.y, radius + l.z, l.a / d.sqrt(), l.b / d.sqrt()];
+impl Column {
+    /// A zone that touches there, if at all, without loads.
+    fn new(touch: Option<RigidContact>, roll: f64, len: usize) -> Self {
+        let (gap, tan2) = touch.map_or((FAR, 0.0), |t| (t.gap.min(FAR), (t.angle - roll).tan().powi(2)));
+        Self { gap, tan2, rows: vec![[0.0; 6]; len] }
     }
-    // Patches of a few strips tell nothing: the curve goes on to zero depth and beyond as a line.
-    for i in [1, 0] {
-        let (next, after) = (rows[i + 1], rows[i + 2]);
-        // Force and semi-axes stay positive.
-        rows[i] = core::array::from_fn(|k| {
-            let line = 2.0 * next[k] - after[k];
-            if matches!(k, 0 | 4 | 5) { line.max(0.5 * next[k]) } else { line }
-        });
+
+    fn loaded(
+        mut self,
+        strips: &Strips,
+        gaps: &[f64],
+        (radius, material): (f64, &Material),
+        (deepest, axis): (f64, Axis),
+    ) -> Self {
+        // Only strips that can come into contact at the largest depth.
+        let near = |g: &f64| *g < self.gap + deepest * 1.3;
+        let first = gaps.iter().position(near).unwrap_or(0);
+        let end = gaps.iter().rposition(near).map_or(first, |e| e + 1);
+        let strips = strips.part(first, end);
+        let mut epsilon = 0.5;
+        let mut penetration = Vec::with_capacity(end - first);
+        for (i, row) in self.rows.iter_mut().enumerate().rev().take_while(|(i, _)| *i > 1) {
+            let d = axis.node(i).powi(2) * deepest;
+            penetration.clear();
+            penetration.extend(gaps[first..end].iter().zip(&strips.cos).map(|(g, cos)| (self.gap + d - g) * cos));
+            if let Some(l) = zone_load(&strips, &penetration, radius, material.pair_modulus(), &mut epsilon) {
+                *row = [l.force / d.powf(1.5), l.angle, l.y, radius + l.z, l.a / d.sqrt(), l.b / d.sqrt()];
+            }
+        }
+        // Patches of a few strips tell nothing: the curve goes on to zero depth and beyond as a line.
+        for i in [1, 0] {
+            let (next, after) = (self.rows[i + 1], self.rows[i + 2]);
+            // Force and semi-axes stay positive.
+            self.rows[i] = core::array::from_fn(|k| {
+                let line = 2.0 * next[k] - after[k];
+                if matches!(k, 0 | 4 | 5) { line.max(0.5 * next[k]) } else { line }
+            });
+        }
+        self
     }
-    Column { gap: touch.gap, tan2: (touch.angle - roll).tan().powi(2), rows }
 }

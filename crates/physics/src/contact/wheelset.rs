@@ -51,8 +51,7 @@ impl RigidWheelset {
     /// # Errors
     /// No rail below the wheel.
     pub fn wheel(&self, shift: f64, roll: f64) -> Result<RigidContact, ContactError> {
-        let mut gaps = Vec::new();
-        PairGeometry::gaps(&self.rail, &self.strips, shift, roll, &mut gaps);
+        let gaps = PairGeometry::gaps(&self.rail, &self.strips, shift, roll);
         first_touch(&self.strips, &gaps, self.radius).ok_or(ContactError::NoContact { shift, roll })
     }
 
