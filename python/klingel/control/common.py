@@ -12,7 +12,7 @@ import numpy as np
 
 from klingel.control.diagram import Diagram
 from klingel.control.discrete import Section, low_pass, slope_low_pass
-from klingel.control.feedforward import GRAVITY, ContactDesign, SteeringGeometry, attack_angle_table
+from klingel.control.feedforward import ContactDesign, SteeringGeometry, attack_angle_table
 from klingel.drives import OperatingPoint, operating_point
 from klingel.errors import InputError
 from klingel.track import CANT_BASE
@@ -150,34 +150,27 @@ def database_curve(d: Diagram, plant: Plant, w: Wheelset, track: Track, timing: 
     here = d.sum(f"{w.name}.ahead", terms)
     middle = d.sum(f"{w.name}.middle", {here: 1.0}, bias=-0.5 * w.lead * plant.geometry.half_wheelbase)
     twist = d.lookup(f"{w.name}.twist", here, *twist_of(track))
-    return database_curvature(d, f"{w.name}.rho", track, middle), d.product(f"{w.name}.roll_rate", twist, speed)
+    return database_curvature(d, f"{w.name}.rho", track, middle), d.product(f"{w.name}.track_roll_rate", twist, speed)
 
 
 def sense_curve(d: Diagram, plant: Plant, contact: ContactDesign, timing: Timing, *, frequency: float) -> None:
-    """Curvature [1/m], its slope [1/(m s)] and roll rate [rad/s] of the track at both bogies, from their own sensors.
-
-    To be called after `sense_inertia` and when the errors `wd.error` are known.
+    """Curvature [1/m] and its slope [1/(m s)] at both bogies, from their gyros and the errors `wd.error`.
 
     A gyro cannot tell the turning of the track from that of the bogie on it, and the second follows from the steering
     itself: a feedforward of the bare yaw rate is a loop with gain one. So the bogie's own turning is taken out:
     psi_b = (y1 - y2)/(2 a) with the displacements that the speed differences tell, y V gamma/r0^2 = wd - lambda r/r0.
-    What gravity adds to V r in the plane of the track is its roll. All pass low-passes, at `frequency` [Hz] the track's
-    and at four times that the bogie's own.
+    Both pass low-passes, at `frequency` [Hz] the track's yaw rate and at four times that the bogie's own.
     """
     ts = timing.sample_time
     per_error = -(plant.radius**2) / (contact.conicity * 2.0 * plant.geometry.half_wheelbase)
     gain = scheduled(d, "bogie_yaw.gain", lambda v: per_error / v)
     minus = d.sum("bogie_yaw.minus", {gain: -1.0})
-    level = 1.0 / (1.0 + plant.geometry.sway.bogie)
     for bogie in ("bogie1", "bogie2"):
         first, second = (f"{bogie}.wheelset{i}.wd.error" for i in (1, 2))
         yaw = d.sum(f"{bogie}.psi", {first: gain, second: minus})
         own = d.filter(f"{bogie}.turning", yaw, [slope_low_pass(4.0 * frequency, sample_time=ts)])
         gyro = d.delay(f"{bogie}.gyro", d.measure(f"{bogie}.yaw_rate"), timing.sensor_samples)
         track = d.sum(f"{bogie}.track_rate", {gyro: 1.0, own: -1.0})
-        roll = {d.product(f"{bogie}.V.track_rate", d.measure(SPEED), track): 1.0, f"{bogie}.ay.now": -level}
-        angle = d.sum(f"{bogie}.track_roll", {s: k / GRAVITY for s, k in roll.items()})
-        d.filter(f"{bogie}.roll_rate", angle, [slope_low_pass(frequency, sample_time=ts)])
         for name, section in (("rho", low_pass), ("rho.slope", slope_low_pass)):
             rate = d.filter(f"{bogie}.{name}.rate", track, [section(frequency, sample_time=ts)])
             d.quotient(f"{bogie}.{name}", rate, d.measure(SPEED), floor=SPEED_GRID[0])
@@ -192,6 +185,12 @@ def sensed_curve(d: Diagram, plant: Plant, w: Wheelset, *, frequency: float, ext
     ahead = 0.5 * w.lead * plant.geometry.half_wheelbase
     time = scheduled(d, f"{w.name}.rho.time", lambda v: lag + extrapolation * ahead / v)
     return d.sum(f"{w.name}.rho", {f"{w.bogie_name}.rho": 1.0, f"{w.bogie_name}.rho.slope": time})
+
+
+def sensed_roll_rate(d: Diagram, w: Wheelset, timing: Timing, *, frequency: float) -> str:
+    """Roll rate of the track [rad/s] from the gyro of the wheelset, which cannot but roll with the rails."""
+    roll = d.delay(f"{w.name}.roll_rate.now", d.measure(f"{w.name}.roll_rate"), timing.sensor_samples)
+    return d.filter(f"{w.name}.roll_rate.slow", roll, [low_pass(frequency, sample_time=timing.sample_time)])
 
 
 def sense_inertia(d: Diagram, plant: Plant, timing: Timing, *, frequency: float) -> None:

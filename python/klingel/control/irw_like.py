@@ -23,6 +23,7 @@ from klingel.control.common import (
     sense_curve,
     sense_inertia,
     sensed_curve,
+    sensed_roll_rate,
     speed_difference,
     steering_feedforward,
 )
@@ -45,7 +46,7 @@ V gamma y/r0^2 alone and bears a faster loop."""
 class IRWLike:
     """Differential torque control plus steering on the wheel speed difference; parameters with their reasons.
 
-    curvature: where the curve is known from: "gyro" (yaw gyros of wheelset and bogie, accelerometer of the bogie) or
+    curvature: where the curve is known from: "gyro" (gyros of wheelset and bogie) or
         "database" (position along a known track).
     frequency: crossover fI of the steering loop [Hz]; None takes `FREQUENCY`.
     integral_time: Ti of the steering loop [s], five times the loop's own time so that it costs little phase.
@@ -53,6 +54,9 @@ class IRWLike:
         delay of two samples bears.
     gyro_frequency: low-pass of the bogie's yaw rate [Hz] that the radial part of the feedforward is made of; low, so
         that the yaw of the bogie does not steer itself.
+    extrapolation: share of the lag of that low-pass and of the actuators by which the sensed curvature is carried
+        forward along its slope.
+    roll_frequency: low-pass of the roll gyro of the wheelset [Hz]; steering does not roll a wheelset, so it may be fast.
     sensor_frequency: low-pass of the inertial sensors [Hz], above the body's own modes near 1 Hz.
     timing: sampling and delays. contact: what the design assumes of wheel and rail.
 
@@ -69,6 +73,7 @@ class IRWLike:
     current_frequency: float = 30.0
     gyro_frequency: float = 1.5
     extrapolation: float = 1.0
+    roll_frequency: float = 20.0
     sensor_frequency: float = 2.0
     timing: Timing = field(default_factory=Timing)
     contact: ContactDesign = field(default_factory=ContactDesign)
@@ -79,7 +84,17 @@ class IRWLike:
             raise InputError.single("control.curvature", self.curvature, "is not known", remedy=remedy)
         if self.frequency is not None:
             check_positive(self, ("frequency",))
-        check_positive(self, ("integral_time", "current_frequency", "gyro_frequency", "sensor_frequency"))
+        check_positive(
+            self,
+            (
+                "integral_time",
+                "current_frequency",
+                "gyro_frequency",
+                "extrapolation",
+                "roll_frequency",
+                "sensor_frequency",
+            ),
+        )
 
     def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any]:
         """The block diagram for a vehicle at a speed [m/s]; the track is used by the database variant only.
@@ -137,7 +152,7 @@ class IRWLike:
         """M = feedforward + K (1 + 1/(Ti s)) (lambda r/r0 - wd)."""
         if self.curvature == "gyro":
             rho = sensed_curve(d, plant, w, frequency=self.gyro_frequency, extrapolation=self.extrapolation)
-            roll_rate = f"{w.bogie_name}.roll_rate"
+            roll_rate = sensed_roll_rate(d, w, self.timing, frequency=self.roll_frequency)
         else:
             rho, roll_rate = database_curve(d, plant, w, track, self.timing)
         error, limit = f"{w.name}.wd.error", 0.5 * plant.moment_max
