@@ -11,6 +11,7 @@ import xarray as xr
 
 import klingel as kl
 from klingel import result
+from klingel.contact import Profile
 from klingel.errors import InputError, RunCancelledError, SimulationError
 
 
@@ -125,3 +126,20 @@ def test_the_core_says_what_it_refuses(run: xr.Dataset) -> None:
         kl.simulate_spec(spec)
     with pytest.raises(ValueError, match="JSON compliant"):
         kl.simulate_spec(spec | {"speed": float("nan")})
+
+
+def test_the_hold_hauls_the_coach_against_its_drag(run: xr.Dataset) -> None:
+    spec = json.loads(run.attrs["spec"])
+    a, b, c = spec["drag"]["coefficients"]
+    v = spec["speed"]
+    assert run["hold.force"].values[0] == pytest.approx(a + b * v + c * v**2, rel=1e-3)
+
+
+def test_profiles_as_points_run_as_the_named_ones(run: xr.Dataset) -> None:
+    """The standard profiles are defined twice, for people in Python and for the core in Rust: here they meet."""
+    spec = json.loads(run.attrs["spec"])
+    for part, profile in (("wheel", Profile.s1002()), ("rail", Profile.rail_60e1())):
+        spec["contact_pairs"][0][part] = {"points": {"y": profile.y.tolist(), "z": profile.z.tolist()}}
+    points = kl.simulate_spec(spec)
+    for channel, tolerance in (("bogie1.wheelset1.y", 2e-6), ("bogie1.wheelset1.left.Q", 20.0)):
+        np.testing.assert_allclose(points[channel].values, run[channel].values, atol=tolerance)
