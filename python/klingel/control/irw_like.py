@@ -56,7 +56,7 @@ class IRWLike:
         that the yaw of the bogie does not steer itself.
     extrapolation: share of the lag of that low-pass and of the actuators by which the sensed curvature is carried
         forward along its slope.
-    roll_frequency: low-pass of the roll gyro of the wheelset [Hz]; steering does not roll a wheelset, so it may be fast.
+    roll_frequency: low-pass of the wheelset's roll gyro [Hz]; steering does not roll a wheelset, so it may be fast.
     sensor_frequency: low-pass of the inertial sensors [Hz], above the body's own modes near 1 Hz.
     timing: sampling and delays. contact: what the design assumes of wheel and rail.
 
