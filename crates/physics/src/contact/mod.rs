@@ -4,7 +4,7 @@
 pub mod creep;
 pub mod geometry;
 pub mod hertz;
-pub mod normal;
+mod normal;
 mod points;
 pub mod profile;
 mod spline;
@@ -12,13 +12,14 @@ pub mod table;
 #[cfg(test)]
 mod tests;
 pub mod wheelset;
+pub mod zones;
 
 pub use creep::{CreepForce, CreepLaw, RollingContact};
 pub use geometry::PairGeometry;
-pub use normal::Zone;
 pub use profile::Profile;
 pub use table::{ContactTable, OutsideTable, Patch};
 pub use wheelset::{LoadedState, RigidContact, RigidState, RigidWheelset};
+pub use zones::Zone;
 
 /// What a profile, a pair or a table can be refused for.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -4,14 +4,6 @@
 use super::geometry::Strips;
 use super::hertz::{Ellipse, ellipse};
 
-/// The part of the wheel that touches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Zone {
-    Tread,
-    Root,
-    Flange,
-}
-
 /// What the penetration of a zone gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Load {

@@ -2,9 +2,10 @@
 //! Built once in f64; read through any `Scalar`, so that dual numbers get the exact slopes of what is simulated.
 
 use super::geometry::{RigidContact, Strips, first_touch};
-use super::normal::{Zone, zone_load};
+use super::normal::zone_load;
 use super::spline::{Axis, plane, plane_slopes, sharpen, space, space_slopes};
-use super::{ContactError, Material, PairGeometry, Profile};
+use super::zones::WheelZones;
+use super::{ContactError, Material, PairGeometry};
 use crate::{Mask, Scalar};
 use rayon::prelude::*;
 
@@ -16,16 +17,11 @@ const ROLL_INTERVALS: usize = 24;
 const DEPTH_INTERVALS: usize = 14;
 /// Largest penetration of each zone along z, m; steep zones go deeper along z for the same load.
 const DEPTH: [f64; 3] = [4e-4, 8e-4, 1.4e-3];
-/// Width of the strips of each zone, m.
-const STRIP: [f64; 3] = [1e-4, 5e-5, 5e-5];
 /// A zone that finds no rail below it counts as this far away, m.
 const FAR: f64 = 0.03;
 /// A zone farther than this behind the first one to touch has no loads: before it is reached the others are deeper
 /// than their tables; 0.1 mm of shift move it by less than 0.3 mm.
 const REACH: f64 = 3e-3;
-/// Names of the zones, in the order of the tables.
-pub const ZONES: [Zone; 3] = [Zone::Tread, Zone::Root, Zone::Flange];
-
 /// One contact patch of a wheel. All of it is for the right wheel; mirror it for the left one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Patch<S> {
@@ -71,47 +67,6 @@ pub struct ContactTable {
     load: [Vec<f64>; 3],
     /// Places on the wheel where the zones meet: root and flange, tread and root, m.
     pub borders: [f64; 2],
-}
-
-/// Wheel strips of the three zones.
-pub(super) struct WheelZones {
-    pub strips: [Strips; 3],
-    pub borders: [f64; 2],
-}
-
-impl WheelZones {
-    /// Splits the wheel where the rigid contact of a level wheel jumps: once at the start of the root, once at its end.
-    pub fn new(pair: &PairGeometry, rail: &Profile) -> Result<Self, ContactError> {
-        let wheel = &pair.wheel;
-        let whole = Strips::of_wheel(wheel, 5e-5)?;
-        let (tip, end) = (whole.y[0], whole.y[whole.y.len() - 1]);
-        let scan: Vec<RigidContact> = (0..=240)
-            .filter_map(|i| {
-                let gaps = PairGeometry::gaps(rail, &whole, f64::from(i) * 5e-5, 0.0);
-                first_touch(&whole, &gaps, pair.radius)
-            })
-            .collect();
-        let borders = [[30.0_f64, 62.0], [4.0, 14.0]].map(|[least, most]| {
-            let mid = |p: &[RigidContact]| 0.5 * (p[0].angle + p[1].angle).to_degrees();
-            let jump = |p: &[RigidContact]| (p[0].y_wheel - p[1].y_wheel).abs();
-            scan.windows(2)
-                .filter(|p| mid(p) > least && mid(p) < most && jump(p) > 1e-3)
-                .max_by(|p, q| jump(p).total_cmp(&jump(q)))
-                .map(|p| 0.5 * (p[0].y_wheel + p[1].y_wheel))
-                .or_else(|| {
-                    let steep = (0.5 * (least + most)).to_radians();
-                    (0..whole.y.len()).rev().find(|&j| whole.angle[j] >= steep).map(|j| whole.y[j])
-                })
-        });
-        let [Some(flange), Some(root)] = borders else {
-            let (what, value) =
-                ("largest angle of the wheel (rad)".into(), whole.angle.iter().fold(0.0, |m: f64, &a| m.max(a)));
-            let remedy = "give a wheel profile with its flange at negative y".into();
-            return Err(ContactError::OutOfRange { what, value, least: 0.8, most: 1.6, remedy });
-        };
-        let limits = [[root, end], [flange, root], [tip, flange]];
-        Ok(Self { strips: [0, 1, 2].map(|z| Strips::new(wheel, limits[z], STRIP[z])), borders: [flange, root] })
-    }
 }
 
 impl ContactTable {

@@ -185,7 +185,7 @@ fn tables_are_smooth_and_their_slopes_exact() {
 fn tables_smooth_the_direct_solution_by_little() {
     let pair = pair(Profile::rail_uic60());
     let rail = pair.placed_rail().unwrap();
-    let zones = table::WheelZones::new(&pair, &rail).unwrap();
+    let zones = zones::WheelZones::new(&pair, &rail).unwrap();
     // Worst where the contact jumps within a tenth of a millimetre of shift: there 10 % of the load is 5 um of height.
     let (mut force, mut place, mut count) = (0.0_f64, 0.0_f64, 0.0);
     for i in 0..300 {

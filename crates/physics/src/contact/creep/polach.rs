@@ -7,10 +7,12 @@ use core::f64::consts::PI;
 
 /// Creepages below this count as none, so that the direction of the slip stays defined.
 const LEAST_CREEPAGE: f64 = 1e-12;
+/// Friction limit of a patch without load, N: it keeps the quotients finite.
+const LEAST_LIMIT: f64 = 1e-9;
 
 pub(super) fn polach<S: Scalar>(kalker: &Kalker, shear_modulus: f64, c: &RollingContact<S>) -> [S; 3] {
     let [c11, c22, c23, _] = kalker.at(c.a / c.b);
-    let limit = c.friction * c.normal_force;
+    let limit = (c.friction * c.normal_force).max(S::constant(LEAST_LIMIT));
     // Spin moves the lateral slip of the patch's front; it counts where it makes the slip larger.
     let with_spin = c.eta + c.phi * c.a;
     let lateral = S::select(c.eta.abs().lt(with_spin.abs()), with_spin, c.eta).abs();

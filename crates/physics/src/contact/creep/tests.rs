@@ -148,6 +148,16 @@ fn friction_bounds_the_force_and_full_slip_reaches_it() {
 }
 
 #[test]
+fn a_patch_without_load_or_friction_carries_nothing() {
+    for kind in &LAWS[1..] {
+        for (normal_force, friction) in [(0.0, 0.3), (5e4, 0.0)] {
+            let force = law(*kind).force(&RollingContact { normal_force, friction, ..patches()[2] });
+            assert!(force.iter().all(|f| f.abs() < 1e-8), "{kind:?} {force:?}");
+        }
+    }
+}
+
+#[test]
 fn vanishing_creepage_gives_the_linear_law() {
     let linear = law(CreepLaw::Linear);
     for kind in &LAWS[1..] {
