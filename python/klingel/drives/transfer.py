@@ -142,6 +142,13 @@ class DriveTransfer:
         """Td/u = Gu/(1 - Gv Gw), Eq. (27): the design plant of the torque loop."""
         return Rational(self.Gu.numerator * pair.Gw.denominator, self._closed(pair))
 
+    def current_plant(self, pair: WheelPair) -> Rational:
+        """Half difference of the armature currents over u, from Eqs (2), (10) and (27): plant of a current loop."""
+        rotor = self.rotor_inertia * S + self.rotor_damping
+        torque = self.torque_plant(pair)
+        numerator = rotor * torque.denominator + self.gear_ratio * self.torque_constant * torque.numerator
+        return Rational(numerator, (rotor * self._armature + self.torque_constant**2) * torque.denominator)
+
     def speed_plant(self, pair: WheelPair) -> Rational:
         """wd/u = Gu Gw/(1 - Gv Gw), Eq. (29): the design plant of the speed loop."""
         return Rational(self.Gu.numerator, self._closed(pair))
