@@ -8,7 +8,7 @@ use crate::math::Vec3;
 /// ```
 /// use klingel_physics::{elements::Bushing, math::Vec3};
 /// let b = Bushing { stiffness: [1e6, 0.0, 0.0], preload: [0.0, 0.0, -5e4], ..Bushing::default() };
-/// let f = b.force(Vec3::constant([1e-3, 0.0, 0.0]), Vec3::zero());
+/// let f = b.force::<f64>(Vec3::constant([1e-3, 0.0, 0.0]), Vec3::zero());
 /// assert_eq!(f.0, [-1e3, 0.0, -5e4]);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
