@@ -91,8 +91,8 @@ def _active_displacement(summary: Summary) -> Claim:
         f"S: {summary.list('solid_like', 'y_max_mm', 2)} mm; I: {summary.list('irw_like', 'y_max_mm', 2)} mm "
         f"({_radii(summary)}).",
         _verdict(both, top <= 2.0, bool(np.median(both) <= 2.0)),
-        "Smaller than the paper's: a feedforward of the steering moment, which the paper does not mention, does most of "
-        "the work, and the loops correct what it misses."
+        "Smaller than the paper's: a feedforward of the steering moment, which the paper does not mention, does most "
+        "of the work, and the loops correct what it misses."
         if top <= 2.0
         else f"The largest, {top:.2f} mm, is beyond the paper's band.",
     )
