@@ -106,7 +106,7 @@ fn energy_is_kept_on_straight_and_curved_track() {
     for (gravity, track) in [(0.0, straight(100.0)), (9.81, straight(100.0)), (9.81, curving())] {
         let (coarse, turn) = drift(gravity, track.clone(), 5e-4);
         assert!(turn > 0.5, "the bodies turn far: {turn} rad");
-        assert!(coarse < 1e-6, "relative drift {coarse:e}");
+        assert!(coarse < 1e-7, "relative drift {coarse:e}");
     }
 }
 

@@ -85,7 +85,7 @@ fn joints_keep_momentum_and_angular_momentum() {
 }
 
 /// Fourth order as long as the motion is smooth: the linear creep law, small oscillations on the arc.
-/// The tables are once continuously differentiable, so the last digits fall more slowly; 3 is asked for.
+/// The tables are once continuously differentiable, so small errors may fall more slowly; 3.5 is asked for.
 #[test]
 fn the_vehicle_is_integrated_with_the_order_of_the_scheme() {
     let mut case = bogie("linear", 1.0);
@@ -106,11 +106,11 @@ fn the_vehicle_is_integrated_with_the_order_of_the_scheme() {
     };
     let errors = [1e-3, 5e-4, 2.5e-4].map(|step| error(end(step)));
     let orders = [(errors[0] / errors[1]).log2(), (errors[1] / errors[2]).log2()];
-    assert!(orders.iter().all(|o| *o > 3.0), "orders {orders:?} from {errors:?}");
+    assert!(orders.iter().all(|o| *o > 3.5), "orders {orders:?} from {errors:?}");
 }
 
 /// The mirrored vehicle in the mirrored curve: lateral, roll and yaw change their sign, the rest stays.
-/// Its two motors change places, so their senses do too and pitch stays equal to rounding.
+/// Contact, wheels and drives agree bit by bit; bodies that sum several pairs of joints agree to rounding.
 #[test]
 fn the_mirrored_state_has_the_mirrored_rates() {
     let mut case = bogie("fastsim", 1.0);
@@ -141,7 +141,9 @@ fn the_mirrored_state_has_the_mirrored_rates() {
         let expected = mirror(&right.rates(&x));
         let found = left.rates(&mirror(&x));
         for i in 0..x.len() {
-            let close = (found[i] - expected[i]).abs() <= 1e-9 * expected[i].abs().max(1.0);
+            let exactly = names[i].starts_with("front") || names[i].ends_with("spin_speed");
+            let tolerance = if exactly { 0.0 } else { 1e-13 * expected[i].abs().max(1.0) };
+            let close = (found[i] - expected[i]).abs() <= tolerance;
             assert!(close, "{}: {} for {}", names[i], found[i], expected[i]);
         }
     }
