@@ -38,8 +38,8 @@ if TYPE_CHECKING:
 Curvature = Literal["gyro", "database"]
 
 FREQUENCY = {"gyro": 1.4, "database": 1.6}
-"""Crossover of the steering loop [Hz]. The yaw rate of the track, from the database, leaves lambda psi'/r0 in the error,
-which damps the yaw of the wheelset on its primary springs near 6 Hz; the gyro takes it out and bears a little less."""
+"""Crossover of the steering loop [Hz]. With the yaw rate of the track from the database, lambda psi'/r0 stays in the
+error, which damps the yaw of the wheelset on its primary springs near 6 Hz; the gyro takes it out and bears less."""
 
 
 @dataclass(frozen=True)
