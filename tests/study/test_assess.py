@@ -179,6 +179,12 @@ def test_missing_parts_are_named(synthetic):
         curving(whole)
 
 
+def test_thinned_files_are_refused(synthetic):
+    assert curving(synthetic.run(interval=2e-3)).outcome == "completed"
+    with pytest.raises(InputError, match=r"rate=None"):
+        curving(synthetic.run(interval=5e-3))
+
+
 def test_a_straight_track_is_refused(synthetic):
     with pytest.raises(InputError, match="this track has 0"):
         curving(synthetic.run(hand=0.0))

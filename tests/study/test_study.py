@@ -49,7 +49,7 @@ def simulated(synthetic, monkeypatch):
             "bogie1.wheelset1.left.Y": -22e3,
             "bogie1.wheelset1.left.tgamma": 250.0 * k,
         }
-        settings = {"speed": scenario.speed, "friction": scenario.friction, "active": active, "interval": 5e-3}
+        settings = {"speed": scenario.speed, "friction": scenario.friction, "active": active}
         return synthetic.run(shapes, radius=radius, **settings)
 
     monkeypatch.setattr(result, "simulate", simulate)

@@ -14,6 +14,9 @@ from klingel.assess.header import Course, Header, Wheelset, header_of, values
 from klingel.assess.signals import Mask, Signal, longer_than, low_pass, sliding_mean
 from klingel.errors import InputError
 
+INTERVAL_MAX = 2e-3
+"""Longest sample interval [s]: a wheelset rings on its contact springs near 180 Hz, and samples at 200 Hz, as files
+have them by default, fold that down to 20 Hz, where no filter removes it (5 % of the lateral force at R = 300 m)."""
 BEFORE_CURVE = 1.0
 """Maxima start this long before the curve [s]."""
 AFTER_CURVE = 3.0
@@ -146,7 +149,7 @@ def curving(result: xr.Dataset, *, vehicle: str | None = None) -> Assessment:
     """Assess one run through one curve.
 
     Args:
-        result: a run as `klingel.simulate` returns it, channels in SI, recorded at 200 Hz or more.
+        result: a run as `klingel.simulate` returns it, channels in SI, recorded at 500 Hz or more.
         vehicle: name for the row; the name of the spec if not given.
 
     Returns:
@@ -165,6 +168,13 @@ def curving(result: xr.Dataset, *, vehicle: str | None = None) -> Assessment:
             "time", len(time), f"at least 3 samples are needed; the run's outcome: {header.outcome}"
         )
     run = _Run(result, time, float(time[1] - time[0]))
+    if run.interval > INTERVAL_MAX * (1.0 + 1e-6):
+        raise InputError.single(
+            "time",
+            run.interval,
+            f"samples further apart than {INTERVAL_MAX} s: thinned forces show the wheelsets' ringing as slow motion",
+            remedy="assess the run as simulated, or save it with rate=None",
+        )
     course = header.course
     windows = {wheelset.name: run.window(wheelset.name, course) for wheelset in header.wheelsets}
     arcs = {wheelset.name: run.arc(wheelset.name, course) for wheelset in header.wheelsets}
