@@ -1,0 +1,67 @@
+"""Discrete filters and responses of block diagrams against closed forms; whether a diagram is what the core accepts.
+The laws of the blocks are tested beside the core."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from klingel.control.diagram import Diagram
+from klingel.control.discrete import bilinear, lead, low_pass, notch, slope_low_pass
+from klingel.control.response import controller_response
+
+TS = 1e-3
+SLOW = 2.0 * np.pi * np.array([0.1, 1.0, 5.0])
+
+
+def test_low_pass_has_unit_gain_at_rest_and_its_corner_where_it_is_designed() -> None:
+    section = low_pass(4.0, sample_time=TS)
+    corner = section.response(np.array([2.0 * np.pi * 4.0]), TS)[0]
+    assert sum(section.b) / (1.0 + sum(section.a)) == pytest.approx(1.0)
+    assert corner == pytest.approx(1.0 / (2.0 * 0.7 * 1j), rel=1e-9)
+
+
+def test_slope_low_pass_differentiates_the_low_pass() -> None:
+    ratio = slope_low_pass(4.0, sample_time=TS).response(SLOW, TS) / low_pass(4.0, sample_time=TS).response(SLOW, TS)
+    np.testing.assert_allclose(ratio, 1j * SLOW, rtol=1e-3)
+
+
+def test_notch_and_lead() -> None:
+    section = notch(55.0, depth=0.1, width=0.5, sample_time=TS)
+    assert abs(section.response(np.array([2.0 * np.pi * 55.0]), TS)[0]) == pytest.approx(0.1, rel=1e-9)
+    shape = lead(0.02, 0.002, sample_time=TS).response(SLOW, TS)
+    np.testing.assert_allclose(shape, (1.0 + 0.02j * SLOW) / (1.0 + 0.002j * SLOW), rtol=1e-3)
+
+
+def test_bilinear_of_a_gain_is_the_gain() -> None:
+    section = bilinear((3.0, 0.0, 0.0), (1.0, 0.0, 0.0), sample_time=TS)
+    np.testing.assert_allclose(section.response(SLOW, TS), 3.0)
+
+
+def test_response_of_a_scheduled_pi_with_delay() -> None:
+    d = Diagram(sample_time=TS)
+    speed, error = d.measure("speed"), d.measure("error")
+    gain = d.lookup("gain", speed, [10.0, 20.0], [4.0, 2.0])
+    integral = d.sum("integral", {gain: 2.0})
+    out = d.pi("out", error, proportional=gain, integral=integral, limit=100.0)
+    d.command("plant", d.delay("sent", out, 2))
+    response = controller_response(d.spec(), {"speed": 15.0}, SLOW)
+    assert response.shape == (3, 1, 2)
+    expected = 3.0 * (1.0 + 2.0 / (1j * SLOW)) * np.exp(-2j * SLOW * TS)
+    np.testing.assert_allclose(response[:, 0, 1], expected, rtol=1e-4)
+    np.testing.assert_allclose(response[:, 0, 0], 0.0, atol=1e-12)
+
+
+def test_response_linearises_products_and_quotients_about_the_operating_point() -> None:
+    d = Diagram(sample_time=TS)
+    x, y = d.measure("x"), d.measure("y")
+    d.command("product", d.product("xxy", x, x, y))
+    d.command("quotient", d.quotient("x/y", x, y, floor=0.1))
+    response = controller_response(d.spec(), {"x": 3.0, "y": 2.0}, SLOW)[0]
+    np.testing.assert_allclose(response.real, [[12.0, 9.0], [0.5, -0.75]])
+
+
+def test_a_number_of_samples_of_zero_needs_no_block() -> None:
+    d = Diagram(sample_time=TS)
+    assert d.delay("none", d.measure("x"), 0) == "x"
+    assert d.spec()["blocks"] == []
