@@ -23,7 +23,7 @@ STEP = 0.5e-3
 
 STEP_BESIDE = 1e-3
 """Of the integration in the variants [s]: half the time, for forces and wear within 0.1 %, displacements within 1.5 %
-and peaks of the steering voltage within 4 % of those at `STEP`; it follows the wheels' ringing on the rails less well."""
+and peaks of the steering voltage within 4 % of those at `STEP`; it follows the wheels' ringing less well."""
 
 VEHICLES = ("passive", "solid_like", "irw_like")
 """In the order of the tables."""
