@@ -44,6 +44,7 @@ pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
     let material = Material::STEEL;
     let wheels = c.wheels(&material)?;
     let Compiler { bodies, rotors, joints, states, .. } = c;
+    let joint_pairs = mirror_partners(&joints);
     Ok(Model {
         track,
         cant_base: spec.track.cant_base,
@@ -53,6 +54,7 @@ pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
         bodies,
         rotors,
         joints,
+        joint_pairs,
         bushings,
         maxwells,
         stops,
@@ -365,6 +367,16 @@ impl<'a> Compiler<'a> {
         }
         Ok(wheels)
     }
+}
+
+/// Joints of the same bodies at mirrored points, together; the others alone.
+fn mirror_partners(joints: &[Joint]) -> Vec<(usize, Option<usize>)> {
+    let mirrored = |j: &Joint, k: &Joint| {
+        let flip = |[x, y, z]: [f64; 3]| [x, -y, z];
+        (j.a, j.b) == (k.a, k.b) && j.point_a == flip(k.point_a) && j.point_b == flip(k.point_b)
+    };
+    let partner = |i: usize| (0..joints.len()).find(|&k| k != i && mirrored(&joints[i], &joints[k]));
+    (0..joints.len()).map(|i| (i, partner(i))).filter(|&(i, partner)| partner.is_none_or(|k| i < k)).collect()
 }
 
 fn creep_law(spec: &Spec, material: &Material) -> Result<CreepForce, EngineError> {

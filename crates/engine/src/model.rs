@@ -21,6 +21,8 @@ pub struct Model {
     pub bodies: Vec<Body>,
     pub rotors: Vec<Rotor>,
     pub joints: Vec<Joint>,
+    /// Joints with their mirror partners, which are summed first: mirrored motions then agree to the last bit.
+    pub joint_pairs: Vec<(usize, Option<usize>)>,
     pub bushings: Vec<(usize, Bushing)>,
     pub maxwells: Vec<MaxwellIn>,
     pub stops: Vec<(usize, usize, Stop)>,

@@ -17,8 +17,8 @@ pub fn newton_euler<S: Scalar>(m: &Model, w: &mut Workspace<S>, x: &[S], dx: &mu
     }
     for (drive, state) in m.drives.iter().zip(&w.drives) {
         let motor_speed = x[drive.state + 1] * drive.gear_sense - w.motions[drive.body].w_B.y();
-        w.rotor_momentum[drive.body] += motor_speed * drive.law.rotor_inertia;
-        w.rotor_reaction[drive.body] += state.net_rotor_torque * drive.gear_sense;
+        w.motor_momentum[drive.body] += motor_speed * drive.law.rotor_inertia;
+        w.motor_reaction[drive.body] += state.net_rotor_torque * drive.gear_sense;
     }
     for (i, body) in m.bodies.iter().enumerate() {
         let motion = &w.motions[i];
@@ -28,7 +28,11 @@ pub fn newton_euler<S: Scalar>(m: &Model, w: &mut Workspace<S>, x: &[S], dx: &mu
         let force_T = contact_T + gravity_T;
         let acceleration = force_T * S::constant(1.0 / body.mass) - motion.w_track_T.cross(motion.v_T);
         let moment_B = motion.R_WB.back(loads.moment_W) + motion.R_TB.back(loads.moment_T);
-        let turning = angular_acceleration(body, motion, moment_B, w.rotor_momentum[i], w.rotor_reaction[i]);
+        let turning = {
+            let momentum = w.rotor_momentum[i] + w.motor_momentum[i];
+            let reaction = w.rotor_reaction[i] + w.motor_reaction[i];
+            angular_acceleration(body, motion, moment_B, momentum, reaction)
+        };
 
         w.felt_T[i] = contact_T;
         let d = &mut dx[body.state..];

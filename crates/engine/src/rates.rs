@@ -34,6 +34,9 @@ pub struct Workspace<S> {
     /// Momentum of the rotors of each body \[kg m2/s\], and the torque they take \[N m\].
     pub rotor_momentum: Vec<S>,
     pub rotor_reaction: Vec<S>,
+    /// The same of the motors, kept apart so that left and right are summed in pairs.
+    pub motor_momentum: Vec<S>,
+    pub motor_reaction: Vec<S>,
     /// Force on each body without gravity, in T \[N\]: what an accelerometer feels.
     pub felt_T: Vec<Vec3<S>>,
     pub hold_force: S,
@@ -51,6 +54,8 @@ impl<S: Scalar> Workspace<S> {
             rotor_torque: vec![S::zero(); m.rotors.len()],
             rotor_momentum: vec![S::zero(); bodies],
             rotor_reaction: vec![S::zero(); bodies],
+            motor_momentum: vec![S::zero(); bodies],
+            motor_reaction: vec![S::zero(); bodies],
             felt_T: vec![Vec3::zero(); bodies],
             hold_force: S::zero(),
         }
@@ -61,6 +66,8 @@ impl<S: Scalar> Workspace<S> {
         self.rotor_torque.fill(S::zero());
         self.rotor_momentum.fill(S::zero());
         self.rotor_reaction.fill(S::zero());
+        self.motor_momentum.fill(S::zero());
+        self.motor_reaction.fill(S::zero());
     }
 }
 

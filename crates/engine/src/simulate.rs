@@ -112,6 +112,9 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
     for k in 0..=steps {
         let time = k as f64 * step;
         let sampled = wired.as_ref().is_some_and(|c| k % c.every == 0);
+        if let (Some(c), true) = (&wired, sampled && k > 0) {
+            c.drive(&mut inputs);
+        }
         let evaluated = rates(m, &x, &inputs, &mut w, &mut first).and_then(|()| {
             if k % record_every == 0 || sampled {
                 channels::fill(m, &x, &inputs, &w, &mut row);
@@ -140,9 +143,6 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
         if let Err(fault) = advanced {
             series.fault = Some((time, fault));
             break;
-        }
-        if let (Some(c), true) = (&wired, sampled) {
-            c.drive(&mut inputs);
         }
         if k % POLL == 0 {
             progress.set(time / m.run.duration);

@@ -2,7 +2,7 @@
 //! Joints and the elements between two bodies: deflections, laws, and the forces back on both.
 //! The force is resolved in the frame of `a` and acts at the point of `b` on both bodies, as the virtual work demands.
 
-use crate::model::Model;
+use crate::model::{Joint, Model};
 use crate::motion::Motion;
 use crate::rates::{Loads, Workspace};
 use klingel_physics::Scalar;
@@ -78,22 +78,35 @@ pub fn elements<S: Scalar>(m: &Model, x: &[S], inputs: &[f64], w: &mut Workspace
     }
 }
 
-/// Adds what the joints carry to the loads of their bodies.
+/// Adds what the joints carry to the loads of their bodies, mirror partners together.
 pub fn apply<S: Scalar>(m: &Model, w: &mut Workspace<S>) {
-    for (joint, state) in m.joints.iter().zip(&w.joints) {
-        let R_WA = &w.motions[joint.a].R_WB;
-        let force = R_WA.apply(state.force);
-        let (mut on_a, mut on_b) = (state.arm_a.cross(force), state.arm_b.cross(force));
-        if joint.turns {
-            let torque = R_WA.apply(state.torque);
-            on_a += torque;
-            on_b += torque;
+    for &(first, partner) in &m.joint_pairs {
+        let Joint { a, b, .. } = m.joints[first];
+        let mut carried = carry(m, w, first);
+        if let Some(partner) = partner {
+            let other = carry(m, w, partner);
+            carried = [0, 1, 2].map(|i| carried[i] + other[i]);
         }
-        let Loads { force_W, moment_W, .. } = &mut w.loads[joint.b];
+        let [force, on_a, on_b] = carried;
+        let Loads { force_W, moment_W, .. } = &mut w.loads[b];
         *force_W += force;
         *moment_W += on_b;
-        let Loads { force_W, moment_W, .. } = &mut w.loads[joint.a];
+        let Loads { force_W, moment_W, .. } = &mut w.loads[a];
         *force_W -= force;
         *moment_W -= on_a;
     }
+}
+
+/// Force on b, the moment that a gives and the moment that b takes about their centres of mass, in W.
+fn carry<S: Scalar>(m: &Model, w: &Workspace<S>, joint: usize) -> [Vec3<S>; 3] {
+    let state = &w.joints[joint];
+    let R_WA = &w.motions[m.joints[joint].a].R_WB;
+    let force = R_WA.apply(state.force);
+    let (mut on_a, mut on_b) = (state.arm_a.cross(force), state.arm_b.cross(force));
+    if m.joints[joint].turns {
+        let torque = R_WA.apply(state.torque);
+        on_a += torque;
+        on_b += torque;
+    }
+    [force, on_a, on_b]
 }

@@ -71,8 +71,6 @@ fn wheel_on_rail<S: Scalar>(
         wheel.table.patches(shift, depth, roll, yaw).map_err(|outside| Fault::outside_table(&wheel.name, outside))?;
 
     let w_F = Vec3::new(body.w_F.x(), -spin, body.w_F.z());
-    let mean_speed = (v_T.x() + spin * wheel.radius) * 0.5;
-    let v_ref = (mean_speed.square() + CREEP_REFERENCE_FLOOR * CREEP_REFERENCE_FLOOR).sqrt();
 
     let (mut state, mut moment_T) = (WheelState::default(), Vec3::zero());
     for (zone, patch) in patches.iter().enumerate() {
@@ -90,6 +88,8 @@ fn wheel_on_rail<S: Scalar>(
 
             let damping = (slip_T.dot(into_rail) * m.contact_dissipation + 1.0).positive();
             let normal = patch.normal_force * damping;
+            let mean_speed = (v_T.x() + spin * patch.radius) * 0.5;
+            let v_ref = (mean_speed.square() + CREEP_REFERENCE_FLOOR * CREEP_REFERENCE_FLOOR).sqrt();
             let (xi, eta, phi) = (slip_T.x() / v_ref, slip_T.dot(across) / v_ref, w_T.dot(into_rail) / v_ref);
             let friction = S::constant(wheel.friction);
             let rolling = RollingContact { a: patch.a, b: patch.b, normal_force: normal, friction, xi, eta, phi };

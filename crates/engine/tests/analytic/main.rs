@@ -9,5 +9,6 @@ mod frames;
 mod gyroscope;
 mod hunting;
 mod limits;
+mod sampling;
 mod scalars;
 mod wheelset;
