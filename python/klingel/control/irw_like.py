@@ -28,6 +28,7 @@ from klingel.control.common import (
     steering_feedforward,
 )
 from klingel.control.diagram import Diagram
+from klingel.control.discrete import low_pass
 from klingel.control.feedforward import ContactDesign
 from klingel.errors import InputError, nearest
 
@@ -37,21 +38,19 @@ if TYPE_CHECKING:
 
 Curvature = Literal["gyro", "database"]
 
-FREQUENCY = {"gyro": 1.4, "database": 1.6}
-"""Crossover of the steering loop [Hz]. With the yaw rate of the track from the database, lambda psi'/r0 stays in the
-error, which damps the yaw of the wheelset on its primary springs near 6 Hz; the gyro takes it out and bears less."""
-
 
 @dataclass(frozen=True)
 class IRWLike:
     """Differential torque control plus steering on the wheel speed difference; parameters with their reasons.
 
-    curvature: where the curve is known from: "gyro" (gyros of wheelset and bogie) or
-        "database" (position along a known track).
-    frequency: crossover fI of the steering loop [Hz]; None takes `FREQUENCY`.
-    integral_time: Ti of the steering loop [s], five times the loop's own time so that it costs little phase.
+    curvature: where the curve is known from: "gyro" (gyros of wheelset and bogie) or "database"
+        (position along a known track).
+    frequency: crossover fI of the steering loop [Hz]; with a conicity half as large again the gain margin is still 2.
+    integral_time: Ti of the steering loop [s], ten times the loop's own time so that it costs little phase.
     current_frequency: crossover of the differential current loop [Hz]: above all motion of the wheelset, below what a
         delay of two samples bears.
+    yaw_frequency: low-pass of the wheelset's yaw rate [Hz]. Above it lambda psi'/r0 stays in the speed difference, as
+        it does with a database, and damps the yaw of the wheelset on its primary springs near 6 Hz.
     gyro_frequency: low-pass of the bogie's yaw rate [Hz] that the radial part of the feedforward is made of; low, so
         that the yaw of the bogie does not steer itself.
     extrapolation: share of the lag of that low-pass and of the actuators by which the sensed curvature is carried
@@ -68,9 +67,10 @@ class IRWLike:
     """
 
     curvature: Curvature = "gyro"
-    frequency: float | None = None
+    frequency: float = 1.6
     integral_time: float = 1.0
     current_frequency: float = 30.0
+    yaw_frequency: float = 1.5
     gyro_frequency: float = 1.5
     extrapolation: float = 0.5
     roll_frequency: float = 20.0
@@ -82,19 +82,9 @@ class IRWLike:
         if self.curvature not in get_args(Curvature):
             remedy = nearest(self.curvature, get_args(Curvature))
             raise InputError.single("control.curvature", self.curvature, "is not known", remedy=remedy)
-        if self.frequency is not None:
-            check_positive(self, ("frequency",))
-        check_positive(
-            self,
-            (
-                "integral_time",
-                "current_frequency",
-                "gyro_frequency",
-                "extrapolation",
-                "roll_frequency",
-                "sensor_frequency",
-            ),
-        )
+        loops = ("frequency", "integral_time", "current_frequency")
+        sensors = ("yaw_frequency", "gyro_frequency", "extrapolation", "roll_frequency", "sensor_frequency")
+        check_positive(self, (*loops, *sensors))
 
     def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any]:
         """The block diagram for a vehicle at a speed [m/s]; the track is used by the database variant only.
@@ -117,9 +107,8 @@ class IRWLike:
 
     def _steering_gain(self, plant: Plant, speed: float) -> float:
         """K = 2 pi fI kpsi r0^2/(V^2 gamma) [N m s/rad]: y' = V psi, psi = M/kpsi and wd = V gamma y/r0^2."""
-        frequency = FREQUENCY[self.curvature] if self.frequency is None else self.frequency
         stiffness = plant.geometry.yaw_stiffness * plant.radius**2 / self.contact.conicity
-        return 2.0 * math.pi * frequency * stiffness / speed**2
+        return 2.0 * math.pi * self.frequency * stiffness / speed**2
 
     def _torque_loop(self, d: Diagram, plant: Plant, w: Wheelset) -> None:
         """u = K(s) (0 - (IaL - IaR)/2): equal armature currents are equal torques; K cancels the armature's pole."""
@@ -140,7 +129,9 @@ class IRWLike:
         """lambda r/r0 - wd [rad/s], r the yaw rate of the wheelset or of the track: -V gamma y/r0^2."""
         wd = speed_difference(d, w, self.timing)
         if self.curvature == "gyro":
-            rate = d.delay(f"{w.name}.gyro", d.measure(f"{w.name}.yaw_rate"), self.timing.sensor_samples)
+            gyro = d.delay(f"{w.name}.gyro", d.measure(f"{w.name}.yaw_rate"), self.timing.sensor_samples)
+            slow = low_pass(self.yaw_frequency, sample_time=self.timing.sample_time)
+            rate = d.filter(f"{w.name}.gyro.slow", gyro, [slow])
         else:
             here = database_curvature(d, f"{w.name}.rho.here", track, d.measure(f"{w.name}.s"))
             rate = d.product(f"{w.name}.turn", here, d.measure(SPEED))
