@@ -59,7 +59,7 @@ $(VENV)/.packages: pyproject.toml
 	  || { echo "klingel needs python3 >= 3.11, but $(PYTHON) is $$($(PYTHON) --version 2>&1); set PYTHON=..."; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check uv==0.13.9 maturin==1.16.0
-	$(BIN)/uv pip install --quiet --python $(BIN)/python -r pyproject.toml --group dev
+	$(BIN)/uv pip install --quiet --compile-bytecode --python $(BIN)/python -r pyproject.toml --group dev
 	@touch $@
 
 $(VENV)/.extension: $(VENV)/.packages $(RUST_SOURCES)

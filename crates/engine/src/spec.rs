@@ -155,7 +155,7 @@ pub struct CreepSpec {
 
 impl Default for CreepSpec {
     fn default() -> Self {
-        Self { law: "fastsim".into(), elements: [16, 16], contact_dissipation: 3.0 }
+        Self { law: "fastsim".into(), elements: [10, 10], contact_dissipation: 3.0 }
     }
 }
 
