@@ -19,7 +19,7 @@ from klingel.plot import FIGURES, displacement_history, per_radius, render
 from klingel.report.columns import HEADINGS, cell
 from klingel.report.files import write_whole
 from klingel.report.page import StudyPage, study_report
-from klingel.study.cases import FRICTION, STEP, STEP_BESIDE, VEHICLES, Run
+from klingel.study.cases import FRICTION, STEP, VEHICLES, Run
 
 if TYPE_CHECKING:
     from klingel.scenario import Scenario
@@ -164,8 +164,8 @@ def _method(scenario: Scenario, asked: int, made: int) -> dict[str, str]:
         f"gauge {1e3 * scenario.gauge:.0f} mm",
         "Contact": f"elastic, tabulated over shift and roll; creep forces by {scenario.creep_law.upper()}, "
         f"{elements} elements, one coefficient of friction, {FRICTION:.2f} in the main runs",
-        "Integration": f"step {1e3 * STEP:g} ms in the main runs, {1e3 * STEP_BESIDE:g} ms in the variants; "
-        "controllers sampled at 1 kHz; runs start from the static "
+        "Integration": f"step {1e3 * STEP['passive']:g} ms, in the main runs of solid_like "
+        f"{1e3 * STEP['solid_like']:g} ms; controllers sampled at 1 kHz; runs start from the static "
         "equilibrium",
         "Speed": "held by a slow ideal force on the body; the motors of the active vehicles give the torque of Table 1",
     }
