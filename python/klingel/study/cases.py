@@ -24,7 +24,7 @@ STEP = {"passive": 1e-3, "solid_like": 0.5e-3, "irw_like": 1e-3}
 peak voltage asks for the shorter step."""
 
 STEP_BESIDE = 1e-3
-"""Of the integration in the variants [s]: within the same bounds but for that peak voltage, which is up to 5 % lower."""
+"""Of the integration in the variants [s]: within the same bounds but for that peak voltage, up to 5 % lower."""
 
 VEHICLES = ("passive", "solid_like", "irw_like")
 """In the order of the tables."""
