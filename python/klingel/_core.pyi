@@ -2,7 +2,10 @@
 
 from typing import Any, final
 
-__all__ = ["Cancelled", "CoreError", "Progress", "build_info", "check", "simulate"]
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Cancelled", "CoreError", "Progress", "build_info", "check", "profile", "simulate"]
 
 class CoreError(ValueError): ...
 class Cancelled(Exception): ...  # noqa: N818, named so by the core
@@ -16,4 +19,5 @@ class Progress:
 
 def simulate(spec: str, progress: Progress | None = None) -> dict[str, Any]: ...
 def check(spec: str) -> None: ...
+def profile(name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 def build_info() -> dict[str, Any]: ...

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from klingel.contact import Profile, shapes
+from klingel.contact import Profile
 from klingel.errors import InputError
 
 # Points of public files, millimetres: S1002 of CONTACT's MBench example (Apache-2.0); the arcs of 60E1, which are
@@ -23,12 +23,6 @@ def test_s1002(y: float, z: float) -> None:
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_rail_60e1(y: float, z: float, side: float) -> None:
     assert float(Profile.rail_60e1().depth(side * y * 1e-3)) * 1e3 == pytest.approx(z, abs=5e-4)
-
-
-def test_zones_join() -> None:
-    for border in (-62.764705882, -49.662510381, -39.764473993, -38.426669071, -35.0, -26.0, 32.15796):
-        below, above = shapes.s1002(np.array([border - 1e-9, border + 1e-9]))
-        assert below == pytest.approx(above, abs=2e-4)
 
 
 @pytest.mark.parametrize(("header", "scale"), [("y_m,z_m", 1.0), ("y_mm,z_mm", 1e3)])

@@ -136,7 +136,7 @@ def test_the_hold_hauls_the_coach_against_its_drag(run: xr.Dataset) -> None:
 
 
 def test_profiles_as_points_run_as_the_named_ones(run: xr.Dataset) -> None:
-    """The standard profiles are defined twice, for people in Python and for the core in Rust: here they meet."""
+    """Points go another way into the core than names: both give the same run."""
     spec = json.loads(run.attrs["spec"])
     for part, profile in (("wheel", Profile.s1002()), ("rail", Profile.rail_60e1())):
         spec["contact_pairs"][0][part] = {"points": {"y": profile.y.tolist(), "z": profile.z.tolist()}}

@@ -416,13 +416,21 @@ fn contact_table(index: usize, pair: &PairSpec, material: &Material) -> Result<A
 
 fn profile(place: &str, spec: &ProfileSpec) -> Result<Result<Profile, ContactError>, EngineError> {
     Ok(match spec {
-        ProfileSpec::Named(name) => match name.as_str() {
-            "s1002" => Ok(Profile::s1002()),
-            "60e1" => Ok(Profile::rail_60e1()),
-            "uic60" => Ok(Profile::rail_uic60()),
-            other => return Err(value(place, other, "choose s1002, 60e1 or uic60, or give points")),
-        },
+        ProfileSpec::Named(name) => Ok(named_profile(place, name)?),
         ProfileSpec::Cone(slope) => Profile::cone(*slope),
         ProfileSpec::Points { y, z } => Profile::from_points(y, z, place),
     })
+}
+
+/// A standard profile by its name.
+///
+/// # Errors
+/// `EngineError::Value` for a name that is not known.
+pub fn named_profile(place: &str, name: &str) -> Result<Profile, EngineError> {
+    match name {
+        "s1002" => Ok(Profile::s1002()),
+        "60e1" => Ok(Profile::rail_60e1()),
+        "uic60" => Ok(Profile::rail_uic60()),
+        other => Err(value(place, other, "choose s1002, 60e1 or uic60, or give points")),
+    }
 }

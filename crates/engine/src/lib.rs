@@ -17,7 +17,7 @@ pub mod suspension;
 pub mod traction;
 pub mod wheel_rail;
 
-pub use compile::compile;
+pub use compile::{compile, named_profile};
 pub use error::{EngineError, Fault};
 pub use model::Model;
 pub use rates::rates;

@@ -73,6 +73,13 @@ fn check(py: Python<'_>, spec: &str) -> PyResult<()> {
     Ok(())
 }
 
+/// Points (y, z) of a standard profile \[m\]: `s1002`, `60e1`, `uic60`.
+#[pyfunction]
+fn profile<'py>(py: Python<'py>, name: &str) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    let profile = klingel_engine::named_profile("profile", name).map_err(|e| raised(&e))?;
+    Ok((profile.y.into_pyarray(py), profile.z.into_pyarray(py)))
+}
+
 /// Version, source hash, profile and CPU features of this build.
 #[pyfunction]
 fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
@@ -110,6 +117,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<Progress>()?;
     m.add_function(wrap_pyfunction!(simulate, m)?)?;
     m.add_function(wrap_pyfunction!(check, m)?)?;
+    m.add_function(wrap_pyfunction!(profile, m)?)?;
     m.add_function(wrap_pyfunction!(build_info, m)?)?;
     m.add("CoreError", m.py().get_type::<CoreError>())?;
     m.add("Cancelled", m.py().get_type::<Cancelled>())?;

@@ -7,16 +7,15 @@ import csv
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, Self
+from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from klingel.contact import shapes
-from klingel.contact.shapes import Values
+from klingel import _core
 from klingel.errors import InputError, Problem
 
-Kind = Literal["wheel", "rail"]
+Values = NDArray[np.float64]
 
 POINTS_MIN = 20
 WIDTH_MAX = 1.0
@@ -53,14 +52,13 @@ class Profile:
 
     @classmethod
     def s1002(cls) -> Self:
-        """Wheel S1002, EN 13715, from its zone formulas, points 0.05 mm apart."""
-        return cls("S1002", *_metres(shapes.along(*shapes.S1002_RANGE, shapes.s1002)))
+        """Wheel S1002 (EN 13715; flange height 28 mm, thickness 32.5 mm) from its zone formulas, as the core runs it."""
+        return cls("S1002", *_core.profile("s1002"))
 
     @classmethod
     def rail_60e1(cls) -> Self:
-        """Rail head 60E1, EN 13674-1, from its arcs, points 0.05 mm apart."""
-        half = shapes.rail_60e1_half_width()
-        return cls("60E1", *_metres(shapes.along(-half, half, shapes.rail_60e1)))
+        """Rail head 60E1 (EN 13674-1) from its three arcs and flank, as the core runs it."""
+        return cls("60E1", *_core.profile("60e1"))
 
     @classmethod
     def read(cls, path: str | Path) -> Self:
@@ -88,10 +86,6 @@ class Profile:
             remedy = f"use {self.y[0]:g} to {self.y[-1]:g} m"
             raise InputError.single("y", float(outside.flat[0]), "is outside the profile [m]", remedy=remedy)
         return np.asarray(np.interp(at, self.y, self.z))
-
-
-def _metres(points: tuple[Values, Values]) -> tuple[Values, Values]:
-    return points[0] * 1e-3, points[1] * 1e-3
 
 
 def _numbers(row: list[str], index: int, path: Path) -> tuple[float, float]:
