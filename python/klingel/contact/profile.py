@@ -52,7 +52,7 @@ class Profile:
 
     @classmethod
     def s1002(cls) -> Self:
-        """Wheel S1002 (EN 13715; flange height 28 mm, thickness 32.5 mm) from its zone formulas, as the core runs it."""
+        """Wheel S1002 (EN 13715; flange 28 mm high, 32.5 mm thick) from its zone formulas, as the core runs it."""
         return cls("S1002", *_core.profile("s1002"))
 
     @classmethod
