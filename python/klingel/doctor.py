@@ -4,15 +4,14 @@ Light on imports: the check for a stale extension runs whenever klingel is impor
 from __future__ import annotations
 
 import hashlib
-import importlib
 import platform
 import sys
 import warnings
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import Any
 
+from klingel.core import core
 from klingel.errors import CoreMissingError, InputError, StaleExtensionWarning
 
 PACKAGES = ("numpy", "scipy", "pydantic", "pint", "xarray", "netCDF4", "pandas", "matplotlib", "typer", "rich")
@@ -25,14 +24,6 @@ class Finding:
     what: str
     found: str
     good: bool = True
-
-
-def core() -> Any:
-    """The compiled core; errors: CoreMissingError if it was not built."""
-    try:
-        return importlib.import_module("klingel._core")
-    except ImportError as error:
-        raise CoreMissingError(f"klingel._core cannot be loaded ({error}); run `make build` in the checkout") from error
 
 
 def checkout() -> Path | None:

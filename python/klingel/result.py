@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from klingel.doctor import core
+from klingel.core import core
 from klingel.errors import InputError, RunCancelledError, SimulationError
 from klingel.lower import Spec, lower
 from klingel.scenario import Scenario

@@ -100,7 +100,7 @@ def test_sway_and_spin_momentum() -> None:
 
 
 def motor_loop(strategy: SolidLike | IRWLike, speed: float, creep: float, omega: np.ndarray) -> np.ndarray:
-    """Loop of one wheel pair's motors on the plants of Eqs (27) and (29), hold of one sample included."""
+    """Loop of one wheel pair's motors on the plants of Eqs (27) and (29), with the core's sample of output and hold."""
     transfer = DriveTransfer.of(VEHICLE.drive, field_current=operating_point(VEHICLE, speed).field_current)
     pair = WheelPair(45.0, 0.46, speed, creep)
     solid = isinstance(strategy, SolidLike)
@@ -111,7 +111,7 @@ def motor_loop(strategy: SolidLike | IRWLike, speed: float, creep: float, omega:
     voltage = [c["target"] for c in spec["commands"]].index("bogie1.wheelset1.left.armature_voltage")
     left, right = (spec["measurements"].index(f"bogie1.wheelset1.{side}.{channel}") for side in ("left", "right"))
     half_difference = response[:, voltage, left] - response[:, voltage, right]
-    return -half_difference * plant.response(omega) * np.exp(-0.5j * omega * spec["sample_time"])
+    return -half_difference * plant.response(omega) * np.exp(-1.5j * omega * spec["sample_time"])
 
 
 @pytest.mark.parametrize("speed", SPEEDS)

@@ -13,6 +13,7 @@ PACKAGE = Path(klingel.__file__).parent
 
 FLOORS = [
     {"errors"},
+    {"core"},
     {"units"},
     {"records"},
     {"vehicle", "track", "contact"},

@@ -1,5 +1,5 @@
 //! One run: equilibrium, then fixed steps with sampled controllers in between, and rows of channels.
-//! Controllers act on what was measured one sample ago: that is the computation delay.
+//! A command is put out at the sample after the one that made it, whatever the step, and held for a sample.
 
 use crate::channels;
 use crate::compile::compile;

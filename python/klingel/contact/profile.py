@@ -12,7 +12,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from klingel import _core
+from klingel.core import core
 from klingel.errors import InputError, Problem
 
 Values = NDArray[np.float64]
@@ -53,12 +53,12 @@ class Profile:
     @classmethod
     def s1002(cls) -> Self:
         """Wheel S1002 (EN 13715; flange 28 mm high, 32.5 mm thick) from its zone formulas, as the core runs it."""
-        return cls("S1002", *_core.profile("s1002"))
+        return cls("S1002", *core().profile("s1002"))
 
     @classmethod
     def rail_60e1(cls) -> Self:
         """Rail head 60E1 (EN 13674-1) from its three arcs and flank, as the core runs it."""
-        return cls("60E1", *_core.profile("60e1"))
+        return cls("60E1", *core().profile("60e1"))
 
     @classmethod
     def read(cls, path: str | Path) -> Self:
