@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import klingel as kl
 from klingel import library
@@ -142,3 +143,16 @@ def test_active_wheelsets_stay_centred_through_a_short_curve(strategy: SolidLike
         assert np.abs(run[f"{w.name}.actuator_left.force"]).max() < VEHICLE.steering.force_max
         assert np.abs(run[f"{w.name}.left.armature_current"]).max() < 2.0 * VEHICLE.drive.armature_current_rated
         assert np.abs(run[f"{w.name}.steering_voltage"]).max() < 100.0
+        check_pair(run, w.name)
+
+
+def check_pair(run: xr.Dataset, name: str) -> None:
+    """Eqs (18) to (23): in the arc wd, half of Eq. (1), is lambda V rho/r0; VaL and VaR are x VaMax + u and - u."""
+    left, right, u = (
+        run[f"{name}.{part}"].values for part in ("left.armature_voltage", "right.armature_voltage", "steering_voltage")
+    )
+    np.testing.assert_allclose(left[1:] + right[1:], 1800.0, atol=1e-9)
+    np.testing.assert_allclose(0.5 * (left - right)[1:], u[:-1], atol=1e-9)
+    arc = run[f"{name}.curvature"].values == 1.0 / 800.0
+    wd = 0.5 * (run[f"{name}.left.spin_speed"].values - run[f"{name}.right.spin_speed"].values)[arc]
+    assert wd.mean() == pytest.approx(0.75 * 176.0 / 3.6 / 800.0 / 0.46, rel=0.1)

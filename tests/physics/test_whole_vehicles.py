@@ -178,13 +178,14 @@ def test_inner_wheels_unload_as_by_hand(simulate: Simulate) -> None:
         assert mean == pytest.approx((0.5 * weight + sign * moment / 1.5) / 4.0, abs=0.02 * weight / 8.0)
 
 
-@pytest.mark.parametrize(("vehicle", "radius"), [("passive", 300.0), ("irw_like", 800.0)])
+@pytest.mark.parametrize(("vehicle", "radius"), [("passive", 300.0), ("irw_like", 800.0), ("solid_like", 800.0)])
 def test_halving_the_step_changes_no_figure(simulate: Simulate, vehicle: str, radius: float) -> None:
-    """Largest shifts, yaws, forces and voltages: 1 %, or 0.01 mm, 0.01 mrad, 0.05 kN, 0.1 V where that is larger."""
+    """From the study's step to its half: at most 1 %, or 0.01 mm, 0.01 mrad, 0.05 kN, 0.1 V where that is larger."""
     from klingel.assess import curving
+    from klingel.study.cases import STEP
 
     floors = {"mm": 0.01, "mrad": 0.01, "kN": 0.05, "V": 0.1}
-    whole, half = (curving(simulate(vehicle, radius, step=step)).row() for step in (1e-3, 5e-4))
+    whole, half = (curving(simulate(vehicle, radius, step=step)).row() for step in (STEP[vehicle], 0.5 * STEP[vehicle]))
     for name, value in whole.items():
         if isinstance(value, str):
             assert half[name] == value
