@@ -30,7 +30,7 @@ pub struct WheelState<S> {
     pub t_gamma: S,
     /// Sum of |Mz phi| \[N\].
     pub spin_work: S,
-    /// Steepest patch above 1 kN \[rad\], and load carried by patches over 15 degrees \[N\].
+    /// Steepest patch above 1 kN \[rad\], and load of the most loaded patch over 15 degrees \[N\].
     pub contact_angle: f64,
     pub steep_force: f64,
 }
@@ -115,6 +115,6 @@ fn report_angle<S>(state: &mut WheelState<S>, angle: f64, load: f64) {
         state.contact_angle = state.contact_angle.max(angle.abs());
     }
     if angle.abs() > STEEP {
-        state.steep_force += load;
+        state.steep_force = state.steep_force.max(load);
     }
 }

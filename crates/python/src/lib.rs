@@ -73,9 +73,11 @@ fn check(py: Python<'_>, spec: &str) -> PyResult<()> {
     Ok(())
 }
 
+type Column<'py> = Bound<'py, PyArray1<f64>>;
+
 /// Points (y, z) of a standard profile \[m\]: `s1002`, `60e1`, `uic60`.
 #[pyfunction]
-fn profile<'py>(py: Python<'py>, name: &str) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+fn profile<'py>(py: Python<'py>, name: &str) -> PyResult<(Column<'py>, Column<'py>)> {
     let profile = klingel_engine::named_profile("profile", name).map_err(|e| raised(&e))?;
     Ok((profile.y.into_pyarray(py), profile.z.into_pyarray(py)))
 }
