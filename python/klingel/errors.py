@@ -82,15 +82,15 @@ class CoreMissingError(KlingelError):
     """The compiled core is not installed."""
 
 
-def nearest(word: str, known: Sequence[str]) -> str:
-    """Remedy for an unknown word: the nearest known one, or all of them.
+def nearest(word: object, known: Sequence[str]) -> str:
+    """Remedy for an unknown word: the nearest known one, or all of them; all of them for what is no word.
 
     >>> nearest("mas", ["mass", "height"])
     "did you mean 'mass'?"
     >>> nearest("qqq", ["mass", "height"])
     'known: height, mass'
     """
-    match = difflib.get_close_matches(word, known, n=1, cutoff=0.6)
+    match = difflib.get_close_matches(word, known, n=1, cutoff=0.6) if isinstance(word, str) else []
     return f"did you mean {match[0]!r}?" if match else f"known: {', '.join(sorted(known))}"
 
 

@@ -79,6 +79,11 @@ def test_runs_from_end_to_end_of_the_track() -> None:
         ({"creep_law": "fastsin"}, "did you mean 'fastsim'"),
         ({"creep_elements": (16, 1)}, "is no grid"),
         ({"creep_elements": (16, 16, 16)}, "is no grid"),
+        ({"creep_elements": 5}, "creep_elements = 5: is no grid (along, across); give two whole numbers from 2 to 40"),
+        ({"creep_elements": [10.0, 10]}, "creep_elements = (10.0, 10): is no grid"),
+        ({"creep_elements": [True, 10]}, "is no grid"),
+        ({"creep_law": 3}, "creep_law = 3: is not known; known: fastsim, linear, polach"),
+        ({"rail": 3}, "rail = 3: is not known; known: 60E1, UIC60"),
         ({"rail": "60E2"}, "did you mean '60E1'"),
         ({"rail_inclination": 20}, "too steep"),
         ({"gauge": "1435 kg"}, "is a mass"),
@@ -113,6 +118,10 @@ def test_track_shorter_than_the_vehicle() -> None:
         ("curvature =", "curvatur =", "control.curvatur = 'database': is not a known key; did you mean 'curvature'?"),
         ('strategy = "irw_like"', "", "needs a strategy"),
         ("friction = 0.3", "friction = [", "is not TOML"),
+        ("friction = 0.3", "rail = 3", "rail = 3: is not known"),
+        ("friction = 0.3", "creep_law = 3", "creep_law = 3: is not known"),
+        ("creep_elements = [10, 12]", "creep_elements = 5", "creep_elements = 5: is no grid"),
+        ("creep_elements = [10, 12]", "creep_elements = [10.0, 10]", "give two whole numbers"),
     ],
 )
 def test_bad_files(tmp_path: Path, old: str, new: str, said: str) -> None:

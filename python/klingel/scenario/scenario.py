@@ -89,7 +89,7 @@ class Scenario:
             "control": control,
             "friction": to_si(friction, "1", key="friction"),
             "creep_law": creep_law,
-            "creep_elements": tuple(creep_elements),
+            "creep_elements": _as_tuple(creep_elements),
             "rail": rail,
             "rail_inclination": to_si(rail_inclination, "1", key="rail_inclination"),
             "gauge": to_si(gauge, "m", key="gauge"),
@@ -128,6 +128,18 @@ class Scenario:
         return (self.track.length - 2.0 * self.start) / self.speed
 
 
+def _as_tuple(value: object) -> object:
+    """The arrays of a file as tuples; anything else as it is, for the check to refuse."""
+    return tuple(value) if isinstance(value, (list, tuple)) else value
+
+
+def _is_grid(elements: object) -> bool:
+    """Two whole numbers within the limits; 10.0 and True are no whole numbers."""
+    if not isinstance(elements, tuple) or len(elements) != 2:
+        return False
+    return all(type(n) is int and ELEMENTS_MIN <= n <= ELEMENTS_MAX for n in elements)
+
+
 def _problems(scenario: Scenario) -> Iterator[Problem]:
     positive = {"speed": "m/s", "friction": "1", "gauge": "m", "step": "s", "record_interval": "s", "duration": "s"}
     for key, unit in positive.items():
@@ -144,10 +156,9 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
         yield Problem("creep_law", scenario.creep_law, "is not known", nearest(scenario.creep_law, get_args(CreepLaw)))
     if scenario.rail not in RAILS:
         yield Problem("rail", scenario.rail, "is not known", nearest(scenario.rail, RAILS))
-    elements: tuple[object, ...] = scenario.creep_elements
-    if len(elements) != 2 or any(n not in range(ELEMENTS_MIN, ELEMENTS_MAX + 1) for n in elements):
+    if not _is_grid(scenario.creep_elements):
         remedy = f"give two whole numbers from {ELEMENTS_MIN} to {ELEMENTS_MAX}"
-        yield Problem("creep_elements", elements, "is no grid (along, across)", remedy)
+        yield Problem("creep_elements", scenario.creep_elements, "is no grid (along, across)", remedy)
     ratio = scenario.record_interval / scenario.step if scenario.step > 0.0 else 1.0
     if abs(ratio - round(ratio)) > 1e-9 or ratio < 0.5:
         remedy = f"give a multiple of the step {scenario.step:g} s"
