@@ -84,6 +84,27 @@ def test_bad_input_is_one_message_and_exit_2(
     assert [p.name for p in tmp_path.iterdir()] == ["my.toml"]
 
 
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (('"108 km/h"', '"18 km/h"'), "run above the base speed"),
+        (("mechatronic_irw", "manchester_coach"), "manchester_coach is passive"),
+        (('"0.2 s"', '"0.2 s"\nstep = "5 ms"'), "step = 0.005: does not divide"),
+    ],
+)
+def test_what_the_vehicle_cannot_do_names_the_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], change: tuple[str, str], said: str
+) -> None:
+    text = SCENARIO.replace("manchester_coach", "mechatronic_irw") + '[control]\nstrategy = "irw_like"\n'
+    path = write(tmp_path, text.replace(*change))
+    assert cli.run(["run", str(path)]) == 2
+    message = capsys.readouterr().err
+    assert said in message
+    assert "my.toml: " in message
+    assert message.count("\n") == 1
+    assert [p.name for p in tmp_path.iterdir()] == ["my.toml"]
+
+
 def test_missing_scenario(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.run(["run", str(tmp_path / "none.toml")]) == 2
     assert "no such file" in capsys.readouterr().err

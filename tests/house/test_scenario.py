@@ -98,6 +98,22 @@ def test_bad_keywords(changes: dict[str, Any], said: str) -> None:
     assert said in str(refused.value)
 
 
+@pytest.mark.parametrize(
+    ("step", "sample_time", "said"),
+    [
+        ("5 ms", 1e-3, "step = 0.005: does not divide the controller's sample time 0.001 s; give 0.001 s"),
+        ("0.3 ms", 1e-3, "give 0.00025 s"),
+        ("0.5 ms", 0.7e-3, "step = 0.0005: does not divide the controller's sample time 0.0007 s; give 0.0001 s"),
+        ("0.5 ms", 0.0, "control.timing.sample_time = 0.0: must be positive [s]"),
+    ],
+)
+def test_step_divides_the_sample_time(step: str, sample_time: float, said: str) -> None:
+    strategy = control.IRWLike(timing=control.Timing(sample_time=sample_time))
+    with pytest.raises(InputError) as refused:
+        Scenario(library.vehicle("mechatronic_irw"), Track.straight("500 m"), speed=30, step=step, control=strategy)
+    assert str(refused.value).startswith(said) or str(refused.value).endswith(said)
+
+
 def test_track_shorter_than_the_vehicle() -> None:
     with pytest.raises(InputError, match="too short for the vehicle"):
         Scenario(COACH, Track.straight("20 m"), speed=30)
@@ -118,6 +134,7 @@ def test_track_shorter_than_the_vehicle() -> None:
         ("curvature =", "curvatur =", "control.curvatur = 'database': is not a known key; did you mean 'curvature'?"),
         ('strategy = "irw_like"', "", "needs a strategy"),
         ("friction = 0.3", "friction = [", "is not TOML"),
+        ("friction = 0.3", 'step = "5 ms"', "step = 0.005: does not divide the controller's sample time"),
         ("friction = 0.3", "rail = 3", "rail = 3: is not known"),
         ("friction = 0.3", "creep_law = 3", "creep_law = 3: is not known"),
         ("creep_elements = [10, 12]", "creep_elements = 5", "creep_elements = 5: is no grid"),

@@ -62,10 +62,15 @@ def run(
 ) -> None:
     """Run one scenario and save its time series."""
     from klingel.cli.progress import simulate_with_bar
+    from klingel.errors import InputError
     from klingel.result import COMPLETED, save
     from klingel.scenario import Scenario
 
-    result = simulate_with_bar(Scenario.read(scenario), scenario.stem)
+    read = Scenario.read(scenario)
+    try:
+        result = simulate_with_bar(read, scenario.stem)
+    except InputError as error:  # what only the vehicle at its speed shows to be wrong, such as too little voltage
+        raise error if error.file else error.in_file(str(scenario)) from None
     path = save(result, out or scenario.with_suffix(".nc"), rate=rate)
     outcome = result.attrs["outcome"]
     typer.echo(f"{outcome}; {result.attrs['realtime_factor']:.1f} times real time; {path}")

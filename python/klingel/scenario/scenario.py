@@ -4,6 +4,7 @@ Strings carry units, plain numbers are SI."""
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -159,11 +160,36 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
     if not _is_grid(scenario.creep_elements):
         remedy = f"give two whole numbers from {ELEMENTS_MIN} to {ELEMENTS_MAX}"
         yield Problem("creep_elements", scenario.creep_elements, "is no grid (along, across)", remedy)
-    ratio = scenario.record_interval / scenario.step if scenario.step > 0.0 else 1.0
-    if abs(ratio - round(ratio)) > 1e-9 or ratio < 0.5:
-        remedy = f"give a multiple of the step {scenario.step:g} s"
-        yield Problem("record_interval", scenario.record_interval, "is no multiple of the step", remedy)
+    if scenario.step > 0.0:
+        yield from _step_problems(scenario)
     yield from _run_problems(scenario)
+
+
+def _step_problems(scenario: Scenario) -> Iterator[Problem]:
+    """The step divides the controller's sample time and the record interval."""
+    step, interval = scenario.step, scenario.record_interval
+    timing = getattr(scenario.control, "timing", None)  # of the strategies that are sampled
+    if timing is not None and not timing.sample_time > 0.0:
+        remedy = "give a value above zero"
+        yield Problem("control.timing.sample_time", timing.sample_time, "must be positive [s]", remedy)
+    elif timing is not None and not _divides(step, timing.sample_time):
+        message = f"does not divide the controller's sample time {timing.sample_time:g} s"
+        yield Problem("step", step, message, f"give {_nearest_step(step, timing.sample_time, interval):g} s")
+    elif interval > 0.0 and not _divides(step, interval):
+        yield Problem("record_interval", interval, "is no multiple of the step", f"give a multiple of {step:g} s")
+
+
+def _divides(part: float, whole: float) -> bool:
+    ratio = whole / part
+    return 0.5 < ratio < math.inf and abs(ratio - round(ratio)) <= 1e-9
+
+
+def _nearest_step(step: float, sample_time: float, interval: float) -> float:
+    """The short decimal next to `step` [s] that divides the sample time, and the record interval too if one can."""
+    short = [float(f"{sample_time / n:.4g}") for n in range(1, 1001)]
+    steps = [s for s in short if _divides(s, sample_time)]
+    both = [s for s in steps if _divides(s, interval)]
+    return min(both or steps or [sample_time], key=lambda s: abs(s - step))
 
 
 def _run_problems(scenario: Scenario) -> Iterator[Problem]:
