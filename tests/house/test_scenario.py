@@ -52,6 +52,56 @@ def test_file_and_keywords_agree(tmp_path: Path) -> None:
     )
 
 
+def test_strategy_parameters_carry_units(tmp_path: Path) -> None:
+    parameters = """
+frequency = "1600 mHz"
+integral_time = "900 ms"
+extrapolation = 1
+timing = { sample_time = "0.5 ms", sensor_samples = 2 }
+contact = { load = "60 kN", friction = 0.3 }
+"""
+    assert read(tmp_path, FILE + parameters).control == control.IRWLike(
+        curvature="database",
+        frequency=1.6,
+        integral_time=0.9,
+        extrapolation=1.0,
+        timing=control.Timing(sample_time=0.5e-3, sensor_samples=2),
+        contact=control.ContactDesign(load=60e3, friction=0.3),
+    )
+    solid = FILE.replace('"irw_like"', '"solid_like"').replace('curvature = "database"', 'coupling_speed = "144 km/h"')
+    assert read(tmp_path, solid + 'lead_pole = "3 ms"\n').control == control.SolidLike(
+        coupling_speed=40.0, lead_pole=3e-3
+    )
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('frequency = "1.6 kg"', "control.frequency = '1.6 kg': is a mass [kg], wanted Hz; give for example '1 Hz'"),
+        ('frequency = "1.6"', "control.frequency = '1.6': has no unit, wanted Hz"),
+        ("frequency = true", "control.frequency = True: is no quantity [Hz]"),
+        ("frequency = -1", "my.toml: control.frequency = -1.0: must be positive; give a value above zero"),
+        ('extrapolation = "2 s"', "control.extrapolation = '2 s': is a time [s], wanted a pure number"),
+        ("timing = 3", "control.timing = 3: is no table; give [control.timing]"),
+        ("timing.sensor_samples = 1.5", "control.timing.sensor_samples = 1.5: is no whole number"),
+        ("timing.computation_samples = -1", "control.timing.computation_samples = -1: is no whole number"),
+        ("contact.load = 0", "control.contact.load = 0: must be positive [N]; give a value above zero"),
+        ("timing.sampletime = 1", "did you mean 'sample_time'?"),
+        ('frequency = []\nyaw_frequency = "2 m"', "2 problems"),
+    ],
+)
+def test_bad_strategy_parameters(tmp_path: Path, line: str, said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        read(tmp_path, f"{FILE}{line}\n")
+    assert said in str(refused.value)
+    assert "my.toml: " in str(refused.value)
+
+
+def test_strategies_made_in_python_refuse_text() -> None:
+    with pytest.raises(InputError, match=r"control\.frequency = '1\.6 Hz': is no number; give a plain number in SI"):
+        control.IRWLike(frequency="1.6 Hz")  # type: ignore[arg-type]
+
+
 def test_other_tracks_and_a_vehicle_file(tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(library.text("manchester_coach"))
     text = 'vehicle = "mine.toml"\nspeed = 30\ntrack.straight = "1 km"\n'
@@ -133,6 +183,7 @@ def test_track_shorter_than_the_vehicle() -> None:
         ('"irw_like"', '"irw_lik"', "did you mean 'irw_like'?"),
         ("curvature =", "curvatur =", "control.curvatur = 'database': is not a known key; did you mean 'curvature'?"),
         ('strategy = "irw_like"', "", "needs a strategy"),
+        ('curvature = "database"', "curvature = 3", "control.curvature = 3: is not known; known: database, gyro"),
         ("friction = 0.3", "friction = [", "is not TOML"),
         ("friction = 0.3", 'step = "5 ms"', "step = 0.005: does not divide the controller's sample time"),
         ("friction = 0.3", "rail = 3", "rail = 3: is not known"),

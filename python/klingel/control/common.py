@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -266,8 +267,11 @@ def command_motors(d: Diagram, plant: Plant, w: Wheelset, voltage: str, timing: 
 
 
 def check_positive(owner: object, names: Sequence[str]) -> None:
-    """Errors: InputError naming every parameter of a strategy that is not above zero."""
+    """Errors: InputError naming the parameter of a strategy that is no number or not above zero."""
     for name in names:
         value = getattr(owner, name)
+        if isinstance(value, bool) or not isinstance(value, Real):
+            remedy = "give a plain number in SI; only scenario files take strings with units here"
+            raise InputError.single(f"control.{name}", value, "is no number", remedy=remedy)
         if not value > 0.0:
             raise InputError.single(f"control.{name}", value, "must be positive", remedy="give a value above zero")

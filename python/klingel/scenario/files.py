@@ -3,18 +3,17 @@ Everything is checked before a scenario is made; messages name the file."""
 
 from __future__ import annotations
 
-import dataclasses
 import inspect
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 from klingel import control, library
 from klingel.errors import InputError, Problem, nearest
 from klingel.records import Record, read_toml, validated
 from klingel.scenario.scenario import Scenario, Strategy
 from klingel.track import Hand, Segment, Track
-from klingel.units import Curvature, Length, PositiveLength
+from klingel.units import Curvature, Length, PositiveLength, to_si
 from klingel.vehicle import Vehicle
 
 STRATEGIES: dict[str, type[Any]] = {
@@ -26,6 +25,9 @@ STRATEGIES: dict[str, type[Any]] = {
 
 PARTS: dict[str, type[Any]] = {"timing": control.Timing, "contact": control.ContactDesign}
 """Tables inside a strategy's table."""
+
+UNITS = {"frequency": "Hz", "time": "s", "pole": "s", "speed": "m/s", "creep": "N", "load": "N"}
+"""SI units of a strategy's parameters by the last word of their names; all others are pure numbers."""
 
 
 class _Curve(Record):
@@ -90,20 +92,38 @@ def strategy(table: object) -> Strategy:
 
 
 def _made(kind: type[Any], values: Mapping[str, Any], key: str) -> Any:
-    """An object of a dataclass from a table, the tables inside it likewise."""
-    known = [field.name for field in dataclasses.fields(kind)]
-    problems = [
-        Problem(f"{key}.{k}", v, "is not a known key", nearest(k, known)) for k, v in values.items() if k not in known
-    ]
+    """An object of a dataclass from a table, the tables inside it likewise; errors: InputError with every problem."""
+    made: dict[str, Any] = {}
+    problems: list[Problem] = []
+    for name, value in values.items():
+        try:
+            made[name] = _parameter(kind, name, value, key)
+        except InputError as error:
+            problems += error.problems
     if problems:
         raise InputError(problems)
-    inside = {k: _made(PARTS[k], v, f"{key}.{k}") for k, v in values.items() if k in PARTS and isinstance(v, Mapping)}
-    try:
-        return kind(**{**values, **inside})
-    except InputError as error:
-        raise error.within(key) from None
-    except (TypeError, ValueError) as error:
-        raise InputError.single(key, dict(values), f"is not accepted ({error})") from None
+    return kind(**made)
+
+
+def _parameter(kind: type[Any], name: str, value: object, key: str) -> Any:
+    """One value of a strategy's table as its dataclass wants it: numbers in SI, whole numbers, tables inside."""
+    place = f"{key}.{name}"
+    hints = get_type_hints(kind)
+    if name not in hints:
+        raise InputError.single(place, value, "is not a known key", remedy=nearest(name, list(hints)))
+    if name in PARTS:
+        if not isinstance(value, Mapping):
+            raise InputError.single(place, value, "is no table", remedy=f"give [{place}]")
+        return _made(PARTS[name], value, place)
+    if hints[name] is int and (type(value) is not int or value < 0):
+        raise InputError.single(place, value, "is no whole number", remedy="give 0, 1, 2 or more")
+    if hints[name] is float:
+        unit = UNITS.get(name.rpartition("_")[2], "1")
+        number = to_si(value, unit, key=place)  # type: ignore[arg-type]  # it refuses what is no quantity
+        if kind in PARTS.values() and name != "inclination" and number <= 0.0:  # strategies check their own
+            raise InputError.single(place, value, f"must be positive [{unit}]", remedy="give a value above zero")
+        return number
+    return value
 
 
 def _vehicle(name: object, folder: Path) -> Vehicle:
