@@ -173,6 +173,71 @@ def test_the_reason_follows_the_contact_angle():
     assert "flank itself is reached" in reached
 
 
+def test_displacements_below_the_band_agree_in_part():
+    below = paper_claims(Summary(summary_table(y_max_mm=(1.5, 1.1, 0.9, 0.8, 1.1))), 800.0)[1]
+    assert below.verdict == "agrees in part"
+    assert "smaller, down to 0.8 mm" in below.reason
+
+
+def test_the_order_of_the_forces_is_shown_with_the_database():
+    table = summary_table(lateral_force_max_kN=24.35)
+    active = table["vehicle"] == "irw_like"
+    table.loc[active, "lateral_force_max_kN"] = [24.3, 24.3, 24.71, 24.3, 24.3]
+    database = table[active].assign(variant="curvature from the track database", lateral_force_max_kN=24.61)
+    shown, alone = (paper_claims(Summary(table), 800.0, v)[5] for v in (database, None))
+    assert shown.verdict == "agrees in part"
+    assert "At R = 800 m S has 24.35 kN, I 24.71 kN with gyros and 24.61 kN with the database." in shown.reason
+    assert "At R" not in alone.reason
+    assert "S damps with its motors" in alone.reason
+
+
+@pytest.mark.parametrize("radius", RADII)
+def test_one_curve_says_nothing_about_every_curve(radius):
+    table = summary_table()
+    one = Summary(table[table["radius_m"] == radius])
+    history, *others = paper_claims(one, 800.0)
+    assert history.verdict == ("agrees" if radius == 800.0 else "not run")
+    assert {claim.verdict for claim in others} == {"not run"}
+    verdicts = {target.quantity: target.verdict for target in targets(one, library.vehicle("mechatronic_irw"))}
+    assert verdicts["active, every curve: y_max"] == verdicts["S: wear index off its mean"] == "not run"
+    assert verdicts["active: actuator force"] == "met"
+
+
+def test_three_curves_need_both_ends_for_sharp_and_smooth():
+    table = summary_table()
+    verdicts = [claim.verdict for claim in paper_claims(Summary(table[table["radius_m"] < 1000.0]), 800.0)]
+    assert [i for i, verdict in enumerate(verdicts) if verdict == "not run"] == [3, 6, 8]
+
+
+@pytest.mark.parametrize("vehicle", ["passive", "solid_like", "irw_like"])
+def test_a_missing_vehicle_is_not_run(vehicle):
+    table = summary_table()
+    rest = Summary(table[table["vehicle"] != vehicle])
+    claims = paper_claims(rest, 800.0)
+    needed = {"passive": [2, 3, 6, 8], "solid_like": [0, 1, 3, 4, 5, 6, 7, 8], "irw_like": [0, 1, 3, 4, 5, 6, 7, 8]}
+    assert [i for i, claim in enumerate(claims) if claim.verdict == "not run"] == needed[vehicle]
+    found = {target.quantity: target for target in targets(rest, library.vehicle("mechatronic_irw"))}
+    assert {target.verdict for target in found.values()} == {"met", "not run"}
+    if vehicle == "passive":
+        assert "contact: – / – / – / – / –" in claims[2].found
+        assert found["passive, R = 300 m: root or flange contact"].found == "–"
+    else:
+        assert "no flange contact" not in claims[0].found
+        assert found["active, every curve: flange contact"].found == "–"
+
+
+def test_a_run_that_ended_early_misses_its_target():
+    table = summary_table(y_curve_mm=np.nan)
+    assert targets(Summary(table), library.vehicle("mechatronic_irw"))[2].verdict == "not met"
+
+
+def test_notes_are_in_plain_words():
+    note = "Running resistance by the formula sncf_general for tgv stock."
+    html = study_report(page(summary_table(), operating_note=note, vehicles=[])).html
+    assert "the general formula of the SNCF for TGV stock" in html
+    assert "sncf_general" not in html
+
+
 def test_targets():
     vehicle = library.vehicle("mechatronic_irw")
     good = targets(Summary(summary_table()), vehicle)

@@ -66,3 +66,25 @@ def cell(column: str, value: object) -> str:
         return value or "–"
     number = float(value)  # type: ignore[arg-type]
     return "–" if math.isnan(number) else f"{number:.{HEADINGS[column].digits}f}"
+
+
+PLAIN = {"the formula sncf_general": "the general formula of the SNCF", "tgv stock": "TGV stock"}
+"""Names in the vehicles' files to what a reader calls them."""
+
+
+def plain(text: str) -> str:
+    """A text without names that only the vehicles' files use.
+
+    Args:
+        text: of a note.
+
+    Returns:
+        The text in plain words.
+
+    Example:
+        >>> plain("Running resistance by the formula sncf_general for tgv stock")
+        'Running resistance by the general formula of the SNCF for TGV stock'
+    """
+    for name, words in PLAIN.items():
+        text = text.replace(name, words)
+    return text

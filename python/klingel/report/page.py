@@ -14,7 +14,7 @@ import numpy as np
 
 from klingel.assess import COLUMNS, Assessment
 from klingel.report.claims import paper_claims
-from klingel.report.columns import HEADINGS, cell
+from klingel.report.columns import HEADINGS, cell, plain
 from klingel.report.files import write_whole
 from klingel.report.parameters import strategy_rows, vehicle_rows
 from klingel.report.summary import Summary
@@ -114,7 +114,7 @@ def study_report(page: StudyPage) -> Report:
         The page; the same input gives the same page.
     """
     summary = Summary(page.summary)
-    claims = paper_claims(summary, page.radius_of_history) if len(page.summary) else []
+    claims = paper_claims(summary, page.radius_of_history, page.variants) if len(page.summary) else []
     active = [vehicle for vehicle in page.vehicles if vehicle.drive is not None and vehicle.steering is not None]
     return Report(
         _template("study.html").render(
@@ -122,6 +122,7 @@ def study_report(page: StudyPage) -> Report:
             claims=claims,
             differing=[c for c in claims if c.verdict in ("differs", "agrees in part")],
             agreeing=[c for c in claims if c.verdict == "agrees"],
+            operating_note=plain(page.operating_note),
             targets=targets(summary, active[0]) if len(page.summary) and active else [],
             headings=HEADINGS,
             summary_rows=_cells(page.summary, COLUMNS),

@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 ACTIVE = ("solid_like", "irw_like")
+SEVERAL = 3
+"""So many curves at least make a statement about every curve."""
+
 SHORT = {"passive": "passive", "solid_like": "S", "irw_like": "I"}
 
 
@@ -46,6 +49,19 @@ class Summary:
         """One word of one run, empty if that run is missing."""
         row = self._rows.get((vehicle, radius))
         return "" if row is None else str(row[column])
+
+    def made(self, vehicle: str, radius: float) -> bool:
+        """Whether a run is in the table."""
+        return (vehicle, radius) in self._rows
+
+    def contact(self, vehicle: str, radius: float) -> str:
+        """`root`, `flange` or `none`, and a dash if that run is missing."""
+        return (self.text(vehicle, radius, "flange_contact") or "none") if self.made(vehicle, radius) else "–"
+
+    @property
+    def several(self) -> bool:
+        """Whether there are curves enough for a statement about every curve."""
+        return len(self.radii) >= SEVERAL
 
     def over_radii(self, vehicle: str, column: str) -> np.ndarray:
         """One figure of one vehicle in every curve, sharpest first."""
