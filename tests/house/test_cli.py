@@ -110,6 +110,26 @@ def test_missing_scenario(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "no such file" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("module", ["klingel.cli.app", "klingel.cli.progress", "klingel.scenario"])
+def test_ctrl_c_during_the_imports(tmp_path: Path, module: str) -> None:
+    interrupt = f"""
+import sys
+
+class Interrupted:
+    def find_spec(self, name, path=None, target=None):
+        if name == "{module}":
+            raise KeyboardInterrupt
+
+sys.meta_path.insert(0, Interrupted())
+from klingel.cli import main
+main()
+"""
+    command = [sys.executable, "-W", "ignore", "-c", interrupt, "run", str(write(tmp_path))]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60.0, check=False)
+    assert ended.returncode == 130
+    assert ended.stderr == "cancelled: finished runs are kept\n"
+
+
 def test_ctrl_c_ends_a_run_cleanly(tmp_path: Path) -> None:
     path = write(tmp_path, SCENARIO.replace('"0.2 s"', '"300 s"').replace("polach", "fastsim"), length="10 km")
     command = [sys.executable, "-W", "ignore", "-c", "from klingel.cli import main; main()", "run", str(path)]

@@ -18,9 +18,9 @@ def main() -> None:
 
 def run(arguments: list[str]) -> int:
     """Run the command line; returns the exit code: 0, 1 for a failure, 2 for bad input, 130 for Ctrl-C."""
-    from klingel.cli.app import app
-
     try:
+        from klingel.cli.app import app  # takes its time, in which Ctrl-C is heard as in a run
+
         app(arguments, prog_name="klingel", standalone_mode=True)
     except SystemExit as ended:  # typer turns Ctrl-C into a silent 130
         code = ended.code if isinstance(ended.code, int) else 0 if ended.code is None else 1
@@ -35,7 +35,9 @@ def run(arguments: list[str]) -> int:
 
 
 def _cancelled() -> int:
-    return _say("cancelled", "finished runs are kept", CANCELLED)
+    # Plain, as Ctrl-C may have come while the packages for colour were being imported.
+    print("cancelled: finished runs are kept", file=sys.stderr)
+    return CANCELLED
 
 
 def _say(head: str, text: object, code: int) -> int:

@@ -6,7 +6,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -270,7 +269,7 @@ def check_positive(owner: object, names: Sequence[str]) -> None:
     """Errors: InputError naming the parameter of a strategy that is no number or not above zero."""
     for name in names:
         value = getattr(owner, name)
-        if isinstance(value, bool) or not isinstance(value, Real):
+        if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
             remedy = "give a plain number in SI; only scenario files take strings with units here"
             raise InputError.single(f"control.{name}", value, "is no number", remedy=remedy)
         if not value > 0.0:
