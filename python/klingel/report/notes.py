@@ -21,10 +21,10 @@ ESTIMATE = (
 
 HUNTING = (
     "In the arc of R = 1800 m at 265 km/h the passive coach hunts lightly: at friction 0.35 its trailing bogie keeps "
-    "up a limit cycle of 2 Hz and 1.8 mm peak to peak, also in an arc three times as long and at half the step. "
-    "Stronger yaw dampers, 100 to 400 kN s/m, do not cure it; on straight track it is calm. At R = 1200 m and at "
-    "friction 0.30 a slower motion, 0.7 Hz and up to 0.9 mm, is left from the transition at the end of the arc; in the "
-    "longer arc it dies out."
+    "up a limit cycle of 2 Hz and 1.8 mm peak to peak, also in an arc of 20 s and at half the step. Yaw dampers from "
+    "100 to 400 kN s/m do not cure it; at 70 m/s it dies out, and on straight track the coach is calm. At R = 1200 m, "
+    "and at R = 1800 m with friction 0.30, a slower motion of 0.7 Hz and up to 0.9 mm, left from the transition, lasts "
+    "to the end of the arc; in the longer arc it dies out."
 )
 """What the passive coach of the library does in the smoothest curves; measured on its runs, not in the summary."""
 
