@@ -47,18 +47,19 @@ def wheels(run: xr.Dataset) -> list[str]:
 
 @pytest.mark.parametrize("vehicle", VEHICLES)
 def test_a_left_curve_is_the_mirrored_right_curve(simulate: Simulate, vehicle: str) -> None:
-    """Within 2e-8 of each channel's range: rounding.
+    """Within 1e-9 of each channel's range; 5e-9 with controllers, whose sums are not in mirrored pairs.
 
-    Left and right springs are summed in another order, which is rounding of 1e-16; the contact takes penetrations of
-    20 um as differences of coordinates of 0.46 m, which makes it 4e-12 of a wheel load at every step, and that is up to
-    1e-8 of channels that are small beside what they are made of, such as the yaw moments of forces of many kilonewtons.
+    The mechanics sums left and right in pairs; what is left is rounding of the equilibrium and of the controllers. The
+    contact takes penetrations of 20 um as differences of coordinates of 0.46 m, which makes a rounding of 1e-16 into
+    4e-12 of a wheel load, and more of channels that are small beside what they are made of, such as yaw moments.
     """
+    share = 1e-9 if vehicle == "passive" else 5e-9
     right, left = (simulate(vehicle, hand=hand) for hand in ("right", "left"))
     for channel in map(str, right.data_vars):
         swapped = re.sub("left|right", lambda side: {"left": "right", "right": "left"}[side[0]], channel)
         sign = -1.0 if channel.rsplit(".", 1)[1] in ODD else 1.0
         here, there = right[channel].to_numpy(), sign * left[swapped].to_numpy()
-        assert np.max(np.abs(here - there)) <= 2e-8 * np.ptp(here) + 1e-13, channel
+        assert np.max(np.abs(here - there)) <= share * np.ptp(here) + 1e-13, channel
 
 
 @pytest.mark.parametrize("vehicle", VEHICLES)
