@@ -182,8 +182,8 @@ def _attack_angles(summary: Summary) -> Claim:
         "17",
         "Attack angles are reduced in sharp curves and similar in smooth ones.",
         f"passive: {summary.list('passive', column, 2)}; S: {summary.list('solid_like', column, 2)}; "
-        f"I: {summary.list('irw_like', column, 2)} mrad. S and I over passive: {_one(sharp, 2)} at most in the "
-        f"sharpest, {joined(np.array(smooth), 2)} in the smoothest curve.",
+        f"I: {summary.list('irw_like', column, 2)} mrad. S and I over passive: {_one(sharp, 2)} at most "
+        f"at R = {summary.radii[0]:.0f} m, {joined(np.array(smooth), 2)} at R = {summary.radii[-1]:.0f} m.",
         _verdict([sharp, *smooth], sharp < 0.9 and similar, sharp < 0.9 or similar, curves=_both_ends(summary)),
         reason,
     )
@@ -270,7 +270,7 @@ def _wear_smoothest(summary: Summary) -> Claim:
     return Claim(
         "19",
         "In the smoothest curve wear is still halved.",
-        f"S and I over passive: {joined(np.array(ratios), 2)} in the smoothest curve.",
+        f"S and I over passive: {joined(np.array(ratios), 2)} at R = {summary.radii[-1]:.0f} m.",
         _verdict(ratios, max(ratios) <= 0.6, max(ratios) < 1.0, curves=_both_ends(summary)),
         (floor if max(ratios) > 0.6 else halved) + hunting,
     )
