@@ -77,7 +77,7 @@ pub fn fill(m: &Model, x: &[f64], inputs: &[f64], w: &Workspace<f64>, row: &mut 
         put(&wheel_row(state, x[m.rotors[wheel.rotor].state]));
     }
     for (drive, state) in m.drives.iter().zip(&w.drives) {
-        put(&[x[drive.state], inputs[drive.input], x[drive.state + 1], state.shaft_torque]);
+        put(&[x[drive.state], drive.armature_voltage(inputs), x[drive.state + 1], state.shaft_torque]);
     }
     for actuator in &m.actuators {
         put(&[x[actuator.state], inputs[actuator.input], w.joints[actuator.joint].u.x()]);

@@ -140,6 +140,14 @@ pub struct Hold {
     pub state: usize,
 }
 
+impl Drive {
+    /// What the inverter puts out \[V\]: the commanded voltage within +-VaMax.
+    #[inline]
+    pub fn armature_voltage(&self, inputs: &[f64]) -> f64 {
+        inputs[self.input].clamp(-self.voltage_max, self.voltage_max)
+    }
+}
+
 impl Model {
     pub fn state_count(&self) -> usize {
         self.state_names.len()

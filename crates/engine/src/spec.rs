@@ -282,7 +282,7 @@ pub struct DriveSpec {
     pub field_current: f64,
     /// Armature voltage while no controller commands it \[V\].
     pub armature_voltage: f64,
-    /// VaMax \[V\]; commands beyond it saturate, and are reported.
+    /// VaMax \[V\]; commands beyond it saturate, and the channel shows what is put out.
     pub armature_voltage_max: f64,
     /// N = wheel speed over motor speed \[-\].
     pub gear_ratio: f64,

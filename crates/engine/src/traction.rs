@@ -21,7 +21,7 @@ pub fn motors<S: Scalar>(m: &Model, x: &[S], inputs: &[f64], w: &mut Workspace<S
         let i = drive.state;
         let wheel_speed = x[m.rotors[drive.rotor].state] + w.motions[drive.body].w_B.y();
         let motor = drives::DriveState { armature_current: x[i], motor_speed: x[i + 1], twist: x[i + 2] };
-        let rates = drive.law.rates(&motor, S::constant(inputs[drive.input]), wheel_speed);
+        let rates = drive.law.rates(&motor, S::constant(drive.armature_voltage(inputs)), wheel_speed);
         dx[i] = rates.armature_current;
         // still without the pitch acceleration of the body, which `newton_euler` adds
         dx[i + 1] = rates.motor_speed;

@@ -152,3 +152,21 @@ fn the_first_instant_of_a_drive_is_right() {
         assert!((dx[drive + 1] - (net / 1.5 + sense * pitching)).abs() < 1e-11);
     }
 }
+
+/// A commanded voltage beyond VaMax acts as VaMax, either way: La Ia' = Va at standstill.
+#[test]
+fn the_armature_voltage_stays_within_its_limit() {
+    for (commanded, put_out) in [(900.0, 900.0), (2500.0, 1500.0), (-2500.0, -1500.0)] {
+        let mut case = top(0.0, straight(100.0));
+        case["drives"] = json!([{
+            "name": "drive", "body": "top", "rotor": "spin", "armature_resistance": 0.15, "armature_inductance": 3e-3,
+            "emf_constant": 0.4646, "field_current": 6.0, "armature_voltage": commanded, "armature_voltage_max": 1500.0,
+            "gear_ratio": 0.25, "gear_sense": -1.0, "rotor_inertia": 1.5, "rotor_damping": 0.0,
+            "transmission_stiffness": 2e5, "transmission_damping": 0.0 }]);
+        let mut plant = Plant::new(&case);
+        let x = plant.design_state();
+        let drive = plant.model.drives[0].state;
+        assert_eq!(x[drive + 1], 0.0);
+        assert_eq!(plant.rates(&x)[drive], put_out / 3e-3);
+    }
+}
