@@ -211,7 +211,7 @@ def _force_order(summary: Summary, database: Summary | None) -> Claim:
         "18",
         "S is slightly worse than I.",
         f"S over I: {joined(ratio, 3)} ({_radii(summary)}).",
-        _verdict(ratio, bool(np.all(ratio >= 0.995)), bool(np.any(ratio >= 0.995)), curves=summary.several),
+        _verdict(ratio, bool(np.all(ratio >= 1.0)), bool(np.median(ratio) >= 1.0), curves=summary.several),
         "The paper gives the lower bandwidth of S as the reason. Here both strategies feed the same steering moment "
         "forward, which leaves little between them. How they know the curve explains a part: S reads it from the track "
         "database, without delay; I senses it with gyros, whose filters delay it most where the transitions are "
