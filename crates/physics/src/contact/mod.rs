@@ -4,21 +4,24 @@
 pub mod creep;
 pub mod geometry;
 pub mod hertz;
+mod level;
+pub mod loaded;
 mod normal;
 mod points;
 pub mod profile;
+pub mod rigid;
 mod spline;
 pub mod table;
 #[cfg(test)]
 mod tests;
-pub mod wheelset;
 pub mod zones;
 
 pub use creep::{CreepForce, CreepLaw, RollingContact};
 pub use geometry::PairGeometry;
+pub use loaded::LoadedState;
 pub use profile::Profile;
+pub use rigid::{RigidContact, RigidState, RigidWheelset};
 pub use table::{ContactTable, OutsideTable, Patch};
-pub use wheelset::{LoadedState, RigidContact, RigidState, RigidWheelset};
 pub use zones::Zone;
 
 /// What a profile, a pair or a table can be refused for.
