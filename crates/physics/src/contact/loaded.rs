@@ -11,6 +11,8 @@ pub struct LoadedState {
     pub roll: f64,
     /// Tread, root and flange patches of each wheel in its own mirrored frame.
     pub wheels: [[Patch<f64>; 3]; 2],
+    /// Height w of each wheel, m: see [`ContactTable::patches`].
+    pub heights: [f64; 2],
 }
 
 impl LoadedState {
@@ -49,7 +51,8 @@ impl ContactTable {
             Ok([press(left, -roll)?.0, press(right, roll)?.0])
         })?;
         let [left, right] = shifts(y, roll, radius, half);
-        Ok(LoadedState { roll, wheels: [press(left, -roll)?.1, press(right, roll)?.1] })
+        let ((left, p), (right, q)) = (press(left, -roll)?, press(right, roll)?);
+        Ok(LoadedState { roll, wheels: [p, q], heights: [left, right] })
     }
 
     /// The height w at which the right wheel carries `load` (N, vertical), and its patches there.

@@ -17,6 +17,27 @@ pub(super) struct Load {
     /// Semi-axes of the equivalent ellipse along and across the rolling direction, m.
     pub a: f64,
     pub b: f64,
+    /// What views show: see [`PatchDetail`].
+    pub detail: PatchDetail,
+}
+
+/// Size of a patch and its largest pressure: shown by views, not needed by forces.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PatchDetail {
+    /// Area, m2.
+    pub area: f64,
+    /// Largest pressure, Pa.
+    pub pressure: f64,
+}
+
+/// How the elastic normal contact of a patch is computed; both share the zones, the tables and the way they are read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum NormalContact {
+    /// The Hertz contact of the curvatures that fit the gap of each zone best.
+    #[default]
+    Hertz,
+    /// Virtual penetration after Kik and Piotrowski with elliptic shape correction: patches of any outline.
+    KikPiotrowski,
 }
 
 /// Load-weighted sums of one pass over the strips.
@@ -28,56 +49,67 @@ struct Sums {
     curvature: f64,
 }
 
-/// The load of `strips` whose `penetration` (normal, m; negative where apart) is given.
-///
-/// Strip j carries K x_l^2 with x_l^2 = h_j a^2 / (eps d), h_j = penetration - (1 - eps) d; a, eps and K are those of the
-/// Hertz contact with curvature A = mean of cos(angle) / (2 r) along and B = eps d / b^2 across the rolling direction,
-/// b^2 = 5 times the variance of h: eps is found by iteration from `epsilon`, and returned in its place.
-pub(super) fn zone_load(
-    strips: &Strips,
-    penetration: &[f64],
-    radius: f64,
-    pair_modulus: f64,
-    epsilon: &mut f64,
-) -> Option<Load> {
-    let depth = penetration.iter().fold(f64::MIN, |m, &p| m.max(p));
-    if depth <= 0.0 {
-        return None;
-    }
-    let first = penetration.iter().position(|&p| p > 0.0)?;
-    let end = penetration.iter().rposition(|&p| p > 0.0)? + 1;
-    let mut state = None;
-    for _ in 0..60 {
-        let base = (1.0 - *epsilon) * depth;
-        let loaded = |j: usize| (penetration[j] - base).max(0.0);
-        let mut s = Sums::default();
-        for j in first..end {
-            let h = loaded(j);
-            let place = (j - first) as f64 * strips.width;
-            s.load += h;
-            s.place += h * place;
-            s.place2 += h * place * place;
-            s.curvature += h * strips.cos[j] / (radius + strips.z[j]);
+/// What turns penetrations into loads.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Solver {
+    pub normal: NormalContact,
+    /// Nominal radius of the wheel, m.
+    pub radius: f64,
+    /// Plane-strain modulus of the pair, Pa.
+    pub pair_modulus: f64,
+}
+
+impl Solver {
+    /// The load of `strips` whose `penetration` (normal, m; negative where apart) is given.
+    ///
+    /// Strip j carries K x_l^2 with x_l^2 = h_j a^2 / (eps d), h_j = penetration - (1 - eps) d; a, eps and K are those of the
+    /// Hertz contact with curvature A = mean of cos(angle) / (2 r) along and B = eps d / b^2 across the rolling direction,
+    /// b^2 = 5 times the variance of h: eps is found by iteration from `epsilon`, and returned in its place.
+    pub fn load(&self, strips: &Strips, penetration: &[f64], epsilon: &mut f64) -> Option<Load> {
+        let depth = penetration.iter().fold(f64::MIN, |m, &p| m.max(p));
+        if depth <= 0.0 {
+            return None;
         }
-        // Of a patch that the zone's border cuts only one side is seen: its spread is taken about the border.
-        let (mean, last) = (s.place / s.load, (penetration.len() - 1 - first) as f64 * strips.width);
-        let (low, high) = (loaded(0) / (depth - base), loaded(penetration.len() - 1) / (depth - base));
-        let middle = mean - low * (mean + first as f64 * strips.width) + high * (last - mean);
-        // One strip has the variance of its own width.
-        let spread = s.place2 / s.load - 2.0 * middle * mean + middle * middle + strips.width * strips.width / 12.0;
-        let b = (5.0 * spread).sqrt();
-        let along = 0.5 * s.curvature / s.load;
-        let across = *epsilon * depth / (b * b);
-        let e = ellipse(along, across);
-        state = Some((e, across));
-        let change = e.epsilon - *epsilon;
-        *epsilon = e.epsilon;
-        if change.abs() < 1e-7 {
-            break;
+        let first = penetration.iter().position(|&p| p > 0.0)?;
+        let end = penetration.iter().rposition(|&p| p > 0.0)? + 1;
+        let mut state = None;
+        for _ in 0..60 {
+            let base = (1.0 - *epsilon) * depth;
+            let loaded = |j: usize| (penetration[j] - base).max(0.0);
+            let mut s = Sums::default();
+            for j in first..end {
+                let h = loaded(j);
+                let place = (j - first) as f64 * strips.width;
+                s.load += h;
+                s.place += h * place;
+                s.place2 += h * place * place;
+                s.curvature += h * strips.cos[j] / (self.radius + strips.z[j]);
+            }
+            // Of a patch that the zone's border cuts only one side is seen: its spread is taken about the border.
+            let (mean, last) = (s.place / s.load, (penetration.len() - 1 - first) as f64 * strips.width);
+            let (low, high) = (loaded(0) / (depth - base), loaded(penetration.len() - 1) / (depth - base));
+            let middle = mean - low * (mean + first as f64 * strips.width) + high * (last - mean);
+            // One strip has the variance of its own width.
+            let spread = s.place2 / s.load - 2.0 * middle * mean + middle * middle + strips.width * strips.width / 12.0;
+            let b = (5.0 * spread).sqrt();
+            let along = 0.5 * s.curvature / s.load;
+            let across = *epsilon * depth / (b * b);
+            let e = ellipse(along, across);
+            state = Some((e, across));
+            let change = e.epsilon - *epsilon;
+            *epsilon = e.epsilon;
+            if change.abs() < 1e-7 {
+                break;
+            }
         }
+        let (e, across) = state?;
+        let mut load = resultant(strips, &penetration[first..end], first, depth, (e, across), self.pair_modulus);
+        if self.normal == NormalContact::Hertz {
+            let area = core::f64::consts::PI * load.a * load.b;
+            load.detail = PatchDetail { area, pressure: 1.5 * load.force / area };
+        }
+        Some(load)
     }
-    let (e, across) = state?;
-    Some(resultant(strips, &penetration[first..end], first, depth, (e, across), pair_modulus))
 }
 
 /// Sums the strip forces of a solved zone.
@@ -95,12 +127,15 @@ fn resultant(
     let base = (1.0 - e.epsilon) * depth;
     let (mut load, mut x4, mut side, mut down, mut y, mut z, mut place, mut place2) =
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    let (mut area, mut longest) = (0.0, 0.0_f64);
     for (i, p) in penetration.iter().enumerate() {
         let (j, h) = (first + i, (p - base).max(0.0));
         let x2 = h * a_hertz * a_hertz / (e.epsilon * depth);
         let force = stiffness * x2 * strips.width;
         let s = i as f64 * strips.width;
         load += force;
+        area += 2.0 * x2.sqrt() * strips.width;
+        longest = longest.max(x2);
         x4 += force * x2;
         side += force * strips.sin[j];
         down += force * strips.cos[j];
@@ -117,6 +152,8 @@ fn resultant(
         z: z / load,
         a: (1.25 * x4 / load).sqrt(),
         b: (5.0 * variance).sqrt(),
+        // A strip's force is pi/2 times its half-length times its largest pressure.
+        detail: PatchDetail { area, pressure: 2.0 / core::f64::consts::PI * stiffness * longest.sqrt() },
     }
 }
 
@@ -134,6 +171,7 @@ mod tests {
 
     const RADIUS: f64 = 0.46;
     const MODULUS: f64 = 1.139e11;
+    const HERTZ: Solver = Solver { normal: NormalContact::Hertz, radius: RADIUS, pair_modulus: MODULUS };
 
     #[test]
     fn constant_curvature_gives_hertz() {
@@ -141,7 +179,7 @@ mod tests {
             let strips = flat(2001, 2e-5);
             let penetration: Vec<f64> = strips.y.iter().map(|y| depth - b * y * y).collect();
             let mut epsilon = 0.3;
-            let load = zone_load(&strips, &penetration, RADIUS, MODULUS, &mut epsilon).unwrap();
+            let load = HERTZ.load(&strips, &penetration, &mut epsilon).unwrap();
             let hertz = ellipse(0.5 / RADIUS, b);
             let b_hertz = (hertz.epsilon * depth / b).sqrt();
             let near = |x: f64, y: f64, tolerance: f64| assert!((x / y - 1.0).abs() < tolerance, "B {b}: {x} {y}");
@@ -161,7 +199,7 @@ mod tests {
             let gap: Vec<f64> = part.y.iter().map(|y| b * y * y).collect();
             let lowest = gap.iter().fold(f64::MAX, |m, &g| m.min(g));
             let penetration: Vec<f64> = gap.iter().map(|g| depth - g).collect();
-            let force = zone_load(&part, &penetration, RADIUS, MODULUS, &mut 0.5).map_or(0.0, |l| l.force);
+            let force = HERTZ.load(&part, &penetration, &mut 0.5).map_or(0.0, |l| l.force);
             (force, lowest)
         };
         let all = force(0, 801).0;

@@ -10,8 +10,9 @@ fn pair(rail: Profile) -> PairGeometry {
     PairGeometry { wheel, rail, rail_inclination: 0.025, gauge: 1.435, flange_back: 1.36, radius: 0.46 }
 }
 
-static UIC60: LazyLock<ContactTable> =
-    LazyLock::new(|| ContactTable::build(&pair(Profile::rail_uic60()), &Material::STEEL).unwrap());
+static UIC60: LazyLock<ContactTable> = LazyLock::new(|| {
+    ContactTable::build(&pair(Profile::rail_uic60()), &Material::STEEL, NormalContact::Hertz).unwrap()
+});
 
 /// Shift of the right wheel for the wheelset's position and roll.
 fn shift(y: f64, roll: f64) -> f64 {
@@ -197,7 +198,8 @@ fn tables_smooth_the_direct_solution_by_little() {
             let gaps = PairGeometry::gaps(&rail, strips, shift, roll);
             let penetration: Vec<f64> = gaps.iter().zip(&strips.cos).map(|(g, cos)| (w - g) * cos).collect();
             let modulus = Material::STEEL.pair_modulus();
-            let direct = normal::zone_load(strips, &penetration, 0.46, modulus, &mut 0.5).unwrap();
+            let solver = normal::Solver { normal: NormalContact::Hertz, radius: 0.46, pair_modulus: modulus };
+            let direct = solver.load(strips, &penetration, &mut 0.5).unwrap();
             force += (patch.normal_force / direct.force - 1.0).powi(2);
             place += (patch.y_wheel - direct.y).powi(2);
             count += 1.0;
@@ -224,7 +226,7 @@ fn impossible_pairs_are_refused() {
     let bad = |change: fn(&mut PairGeometry)| {
         let mut pair = pair(Profile::rail_60e1());
         change(&mut pair);
-        ContactTable::build(&pair, &Material::STEEL).unwrap_err().to_string()
+        ContactTable::build(&pair, &Material::STEEL, NormalContact::Hertz).unwrap_err().to_string()
     };
     assert!(bad(|p| p.gauge = 1435.0).starts_with("gauge: 1435"));
     assert!(bad(|p| p.flange_back = 1.42).starts_with("flange-back distance: 1.42"));
@@ -234,6 +236,6 @@ fn impossible_pairs_are_refused() {
     let mut rail = pair(Profile::from_points(&flat, &vec![0.0; 60], "flat").unwrap());
     assert!(rail.placed_rail().unwrap_err().to_string().contains("14 mm below its top"));
     (rail.rail, rail.wheel) = (Profile::rail_60e1(), Profile::rail_60e1());
-    let refused = ContactTable::build(&rail, &Material::STEEL).unwrap_err().to_string();
+    let refused = ContactTable::build(&rail, &Material::STEEL, NormalContact::Hertz).unwrap_err().to_string();
     assert!(refused.contains("give a wheel profile"), "{refused}");
 }
