@@ -2,6 +2,7 @@
 //! The only thing that crosses from Python into the core; `compile` turns it into a `Model`.
 
 use crate::control::ControlSpec;
+use klingel_physics::contact::NormalContact;
 use serde::{Deserialize, Serialize};
 
 /// Everything a run needs. Points are in the design frame of the vehicle: x forward from its reference point,
@@ -105,6 +106,28 @@ pub struct PairSpec {
     pub flange_back: f64,
     /// Nominal wheel radius \[m\].
     pub radius: f64,
+    #[serde(default)]
+    pub normal: NormalSpec,
+}
+
+/// How the normal contact is solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NormalSpec {
+    /// Hertz in every zone of the wheel.
+    #[default]
+    Hertz,
+    /// Virtual penetration, not Hertzian.
+    KikPiotrowski,
+}
+
+impl From<NormalSpec> for NormalContact {
+    fn from(normal: NormalSpec) -> Self {
+        match normal {
+            NormalSpec::Hertz => Self::Hertz,
+            NormalSpec::KikPiotrowski => Self::KikPiotrowski,
+        }
+    }
 }
 
 /// A named profile or its points \[m\].
