@@ -47,11 +47,32 @@ impl ContactPair {
             return y.par_iter().map(|&y| self.rigid.rolling_radius_difference(y)).collect();
         };
         let table = &self.table()?.table;
-        let difference =
-            |&y: &f64| Ok(table.wheelset_at(&self.geometry, y, 0.0, load)?.rolling_radius_difference());
+        let difference = |&y: &f64| Ok(table.wheelset_at(&self.geometry, y, 0.0, load)?.rolling_radius_difference());
         y.par_iter().map(difference).collect()
     }
 }
+
+/// Index of the place, side, patch.
+type Row<'a> = (usize, usize, &'a ContactPoint);
+
+/// A column of numbers.
+type Float = (&'static str, fn(&ContactPoint) -> f64);
+
+const FLOATS: [Float; 13] = [
+    ("x", |p| p.x),
+    ("y_wheel", |p| p.y_wheel),
+    ("z_wheel", |p| p.z_wheel),
+    ("y_rail", |p| p.y_rail),
+    ("z_rail", |p| p.z_rail),
+    ("angle", |p| p.angle),
+    ("rolling_radius", |p| p.radius),
+    ("a", |p| p.a),
+    ("b", |p| p.b),
+    ("area", |p| p.area),
+    ("pressure", |p| p.pressure),
+    ("normal_force", |p| p.normal_force),
+    ("penetration", |p| p.penetration),
+];
 
 type Column<'py> = Bound<'py, PyArray1<f64>>;
 type Values<'py> = PyReadonlyArray1<'py, f64>;
@@ -84,36 +105,18 @@ impl ContactPair {
     ) -> PyResult<Bound<'py, PyDict>> {
         let y = y.as_slice()?;
         let states = py.detach(|| self.at(y, yaw, load)).map_err(|e| refused(&e))?;
-        let rows: Vec<(usize, usize, &ContactPoint)> = states
+        let rows: Vec<Row<'_>> = states
             .iter()
             .enumerate()
             .flat_map(|(i, s)| (0..2).flat_map(move |side| s.wheels[side].iter().map(move |p| (i, side, p))))
             .collect();
         let columns = PyDict::new(py);
-        let index = |f: fn(&(usize, usize, &ContactPoint)) -> i64| {
-            rows.iter().map(f).collect::<Vec<i64>>().into_pyarray(py)
-        };
-        let place = |p: &(usize, usize, &ContactPoint)| p.0 as i64;
-        columns.set_item("place", index(place))?;
-        columns.set_item("side", index(|p| p.1 as i64))?;
-        columns.set_item("zone", index(|p| p.2.zone.map_or(-1, zone_number)))?;
-        let floats: [(&str, fn(&ContactPoint) -> f64); 13] = [
-            ("x", |p| p.x),
-            ("y_wheel", |p| p.y_wheel),
-            ("z_wheel", |p| p.z_wheel),
-            ("y_rail", |p| p.y_rail),
-            ("z_rail", |p| p.z_rail),
-            ("angle", |p| p.angle),
-            ("rolling_radius", |p| p.radius),
-            ("a", |p| p.a),
-            ("b", |p| p.b),
-            ("area", |p| p.area),
-            ("pressure", |p| p.pressure),
-            ("normal_force", |p| p.normal_force),
-            ("penetration", |p| p.penetration),
-        ];
-        for (name, value) in floats {
-            columns.set_item(name, rows.iter().map(|(_, _, p)| value(p)).collect::<Vec<f64>>().into_pyarray(py))?;
+        let index = |f: fn(&Row<'_>) -> i64| rows.iter().map(f).collect::<Vec<i64>>().into_pyarray(py);
+        columns.set_item("place", index(|row| row.0 as i64))?;
+        columns.set_item("side", index(|row| row.1 as i64))?;
+        columns.set_item("zone", index(|row| row.2.zone.map_or(-1, zone_number)))?;
+        for (name, value) in FLOATS {
+            columns.set_item(name, rows.iter().map(|row| value(row.2)).collect::<Vec<f64>>().into_pyarray(py))?;
         }
         let roll: Vec<f64> = rows.iter().map(|(i, _, _)| states[*i].roll).collect();
         columns.set_item("roll", roll.into_pyarray(py))?;

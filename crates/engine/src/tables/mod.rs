@@ -72,14 +72,9 @@ fn hash(pair: &PairGeometry, material: &Material, normal: NormalContact) -> Stri
     let mut hash = Sha256::new();
     hash.update(env!("KLINGEL_BUILDER_HASH"));
     hash.update(format!("{normal:?}"));
-    for x in [
-        pair.rail_inclination,
-        pair.gauge,
-        pair.flange_back,
-        pair.radius,
-        material.youngs_modulus,
-        material.poisson,
-    ] {
+    for x in
+        [pair.rail_inclination, pair.gauge, pair.flange_back, pair.radius, material.youngs_modulus, material.poisson]
+    {
         hash.update(x.to_le_bytes());
     }
     for Profile { y, z, slope } in [&pair.wheel, &pair.rail] {
