@@ -98,7 +98,8 @@ pub fn named_profile(place: &str, name: &str) -> Result<Profile, EngineError> {
     match name {
         "s1002" => Ok(Profile::s1002()),
         "60e1" => Ok(Profile::rail_60e1()),
+        "54e1" => Ok(Profile::rail_54e1()),
         "uic60" => Ok(Profile::rail_uic60()),
-        other => Err(value(place, other, "choose s1002, 60e1 or uic60, or give points")),
+        other => Err(value(place, other, "choose s1002, 60e1, 54e1 or uic60, or give points")),
     }
 }

@@ -73,23 +73,6 @@ fn loaded_contact_has_the_place_force_and_size_of_contact_at_50_kn() {
     }
 }
 
-#[test]
-fn conicity_is_that_of_an_independent_program_and_of_the_cone() {
-    // Amplitude 2, 3, 4 mm at 1:40, gauge 1435 mm; computed independently by the linear integration of EN 15302.
-    for (rail, expected) in
-        [(Profile::rail_60e1(), [0.2211, 0.1771, 0.1588]), (Profile::rail_uic60(), [0.2292, 0.1836, 0.1650])]
-    {
-        let rigid = RigidWheelset::new(&pair(rail)).unwrap();
-        for (amplitude, expected) in [2e-3, 3e-3, 4e-3].into_iter().zip(expected) {
-            assert!((rigid.equivalent_conicity(amplitude).unwrap() - expected).abs() < 2e-3);
-        }
-    }
-    let cone = PairGeometry { wheel: Profile::cone(0.05).unwrap(), ..pair(Profile::rail_60e1()) };
-    let conicity = RigidWheelset::new(&cone).unwrap().equivalent_conicity(2e-3).unwrap();
-    // Roll makes a cone on round rails conic by 5 % more.
-    assert!((conicity - 0.0526).abs() < 5e-4, "{conicity}");
-}
-
 /// Least distance along z of a yawed wheel, as a body of revolution, to the rail: (gap, place along the rail).
 fn direct(rail: &Profile, wheel: &Profile, shift: f64, roll: f64, yaw: f64, about: f64) -> (f64, f64) {
     let (r0, mut best) = (0.46, (f64::MAX, 0.0));
