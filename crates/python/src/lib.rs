@@ -87,13 +87,12 @@ fn prepare(py: Python<'_>, spec: &str) -> PyResult<Vec<(&'static str, f64, Optio
     Ok(tables.iter().map(pair::note).collect())
 }
 
-/// Folder of the compiled contact tables and what is in it (path, bytes); none if there is no cache.
+/// Folder of the compiled contact tables and its tables (name, bytes, whether the check sum is right); none without one.
 #[pyfunction]
-fn cache() -> Option<(String, Vec<(String, u64)>)> {
+fn cache(py: Python<'_>) -> Option<(String, Vec<(String, u64, bool)>)> {
     let folder = klingel_engine::tables::disk::folder()?;
-    let tables = klingel_engine::tables::disk::tables(&folder).unwrap_or_default();
-    let shown = |path: std::path::PathBuf| path.display().to_string();
-    Some((shown(folder), tables.into_iter().map(|(path, size)| (shown(path), size)).collect()))
+    let tables = py.detach(|| klingel_engine::tables::disk::check(&folder));
+    Some((folder.display().to_string(), tables))
 }
 
 type Column<'py> = Bound<'py, PyArray1<f64>>;

@@ -11,7 +11,7 @@ const VARIABLE: &str = "KLINGEL_CACHE";
 const EXTENSION: &str = "table";
 const SUM: usize = 32;
 /// Tables kept; the ones written longest ago go first.
-const KEPT: usize = 32;
+const KEPT: usize = 16;
 
 /// Where compiled contact tables are kept: `$KLINGEL_CACHE`, or `klingel` in the user's cache folder; none if there is none.
 pub fn folder() -> Option<PathBuf> {
@@ -58,7 +58,7 @@ fn place(folder: &Path, name: &str) -> PathBuf {
 }
 
 /// The tables of a folder, the newest first, with their sizes in bytes.
-pub fn tables(folder: &Path) -> io::Result<Vec<(PathBuf, u64)>> {
+fn tables(folder: &Path) -> io::Result<Vec<(PathBuf, u64)>> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
@@ -69,6 +69,16 @@ pub fn tables(folder: &Path) -> io::Result<Vec<(PathBuf, u64)>> {
     }
     found.sort_by(|a, b| b.cmp(a));
     Ok(found.into_iter().map(|(_, path, size)| (path, size)).collect())
+}
+
+/// Name, size in bytes and whether the check sum is right, of every table of a folder.
+pub fn check(folder: &Path) -> Vec<(String, u64, bool)> {
+    let look = |(path, size): (PathBuf, u64)| {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let whole = read(folder, &name).is_some();
+        (name, size, whole)
+    };
+    tables(folder).unwrap_or_default().into_iter().map(look).collect()
 }
 
 fn prune(folder: &Path) -> io::Result<()> {
@@ -112,9 +122,9 @@ mod tests {
         for i in 0..KEPT + 3 {
             write(&folder, &format!("{i}"), &[7; 10]).unwrap();
         }
-        let kept = tables(&folder).unwrap();
-        assert_eq!(kept.len(), KEPT);
-        assert!(kept.iter().all(|(_, size)| *size == 42));
+        fs::write(place(&folder, &format!("{}", KEPT + 1)), [0; 42]).unwrap();
+        let kept = check(&folder);
+        assert_eq!((kept.len(), kept.iter().filter(|(_, size, whole)| *size == 42 && *whole).count()), (KEPT, KEPT - 1));
         assert!(read(&folder, &format!("{}", KEPT + 2)).is_some());
         fs::remove_dir_all(folder).unwrap();
     }

@@ -1,0 +1,101 @@
+"""Patch by patch: CONTACT's wheel on its rail beside ours, from a file of CONTACT's rows.
+Left wheels are mirrored into the frame of the right one, in which profiles are described."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from klingel.contact import Profile, WheelRailPair, creep_force
+
+FRICTION = 0.3
+SHEAR_MODULUS, POISSON = 8.2e10, 0.28
+"""CONTACT's material of these runs, as ours."""
+
+
+def pair(normal: str = "kik_piotrowski") -> WheelRailPair:
+    """The pair of the rows: S1002 on the UIC60 variant, 1:40, 1435 mm, r0 460 mm."""
+    return WheelRailPair(
+        Profile.s1002(),
+        Profile.rail_uic60(),
+        rail_inclination=1 / 40,
+        gauge=1.435,
+        flange_back=1.36,
+        radius=0.46,
+        normal=normal,  # type: ignore[arg-type]
+    )
+
+
+def compared(path: Path, of: WheelRailPair) -> pd.DataFrame:
+    """One row for every patch of CONTACT with ours nearest to it on the wheel; columns of both, in SI and radians."""
+    rows = pd.read_csv(path, comment="#")
+    return pd.DataFrame(_patches(rows, of))
+
+
+def _patches(rows: pd.DataFrame, of: WheelRailPair) -> Iterator[dict[str, float | str]]:
+    for (load, yaw), group in rows.groupby(["Fz_N", "yaw_rad"]):
+        ours = of.contact(np.unique(group["y_ws_mm"]) * 1e-3, yaw=float(yaw), wheel_load=float(load))
+        for row in group.itertuples():
+            mine = ours[np.isclose(ours["y"], row.y_ws_mm * 1e-3, atol=1e-9) & (ours["side"] == row.side)]
+            sign = 1.0 if row.side == "right" else -1.0
+            y_wheel = sign * row.y_wheel_mm * 1e-3
+            near = mine.iloc[int(np.argmin(np.abs(mine["y_wheel"].to_numpy() - y_wheel)))]
+            fx, fy = _force(of, near, sign, float(yaw)) if hasattr(row, "Fx_N") else (np.nan, np.nan)
+            yield {
+                "y": row.y_ws_mm * 1e-3,
+                "side": row.side,
+                "outwards": sign * row.y_ws_mm * 1e-3,
+                "load": float(load),
+                "yaw": float(yaw),
+                "patches": len(mine),
+                "y_wheel": near["y_wheel"],
+                "y_wheel_contact": y_wheel,
+                "y_rail": near["y_rail"],
+                "y_rail_contact": sign * row.y_rail_mm * 1e-3,
+                "radius": near["rolling_radius"],
+                "radius_contact": row.rolling_radius_mm * 1e-3,
+                "normal_force": near["normal_force"],
+                "normal_force_contact": row.Fn_N,
+                "area": near["area"],
+                "area_contact": row.area_mm2 * 1e-6,
+                "pressure": near["pressure"],
+                "pressure_contact": row.pmax_MPa * 1e6,
+                "fx": fx,
+                "fx_contact": -getattr(row, "Fx_N", np.nan),
+                "fy": fy,
+                "fy_contact": -sign * getattr(row, "Fs_N", np.nan),
+            }
+
+
+def _force(of: WheelRailPair, patch: pd.Series, sign: float, yaw: float) -> tuple[float, float]:
+    """Creep forces on the wheel that rolls straight at the angular speed V/r0, in the frame of a right wheel.
+
+    xi = (V - omega r)/V_ref, eta = -psi/cos(delta) V/V_ref, phi = -omega sin(gamma)/V_ref with V_ref = (V + omega r)/2, r of the
+    unstrained wheel and gamma the contact angle against the axle.
+    """
+    angle = patch["angle"]
+    radius = patch["rolling_radius"] + patch["penetration"] / np.cos(angle)
+    ratio = radius / of.radius
+    mean = 0.5 * (1.0 + ratio)
+    fx, fy, _ = creep_force(
+        "fastsim",
+        a=patch["a"],
+        b=patch["b"],
+        xi=(1.0 - ratio) / mean,
+        eta=-sign * yaw / np.cos(angle) / mean,
+        phi=-np.sin(angle + sign * patch["roll"]) / of.radius / mean,
+        normal_force=patch["normal_force"],
+        friction=FRICTION,
+        shear_modulus=SHEAR_MODULUS,
+        poisson=POISSON,
+    )
+    return float(fx), float(fy)
+
+
+def clear(rows: pd.DataFrame) -> pd.Series:
+    """Away from |y| 4.4-5.6 and 6.3-7.1 mm, where the contact jumps and CONTACT merges patches nearer than 4 mm."""
+    y = rows["y"].abs() * 1e3
+    return ~(y.between(4.4, 5.6) | y.between(6.3, 7.1))
