@@ -5,7 +5,18 @@ from typing import Any, Literal, final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Cancelled", "ContactPair", "CoreError", "Progress", "build_info", "cache", "check", "prepare", "profile", "simulate"]
+__all__ = [
+    "Cancelled",
+    "ContactPair",
+    "CoreError",
+    "Progress",
+    "build_info",
+    "cache",
+    "check",
+    "prepare",
+    "profile",
+    "simulate",
+]
 
 class CoreError(ValueError): ...
 class Cancelled(Exception): ...  # noqa: N818, named so by the core

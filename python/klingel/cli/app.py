@@ -84,9 +84,9 @@ def run(
 def profile(
     wheel: Annotated[str, typer.Option(help="Wheel profile: a standard name or a file of measured points.")] = "S1002",
     rail: Annotated[str, typer.Option(help="Rail profile: a standard name or a file of measured points.")] = "60E1",
-    out: Annotated[
-        Path, typer.Option(help="Page (.html) or picture (.png, .svg) to write.", dir_okay=False)
-    ] = Path("profile.html"),
+    out: Annotated[Path, typer.Option(help="Page (.html) or picture (.png, .svg) to write.", dir_okay=False)] = Path(
+        "profile.html"
+    ),
     inclination: Annotated[str, typer.Option(help="Of the rails, such as 1:40, 0.025 or 0.")] = "1:40",
     gauge: Annotated[str, typer.Option(help="14 mm below the top of rail.")] = "1435 mm",
     flange_back: Annotated[str, typer.Option(help="Distance of the wheels' flange backs.")] = "1360 mm",

@@ -227,4 +227,3 @@ def _heard(ask: Any) -> Any:
         return ask()
     except core().CoreError as error:
         raise InputError([Problem("", None, str(error))]) from None
-
