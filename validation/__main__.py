@@ -26,7 +26,8 @@ def main(names: list[str]) -> int:
         print(module.TITLE)
         for row in results[name]:
             print(
-                f"  {'ok' if row.passed else 'NO'}  {row.quantity}: {row.measured:.4g} {row.unit} (limit {row.tolerance:.4g})"
+                f"  {'ok' if row.passed else 'NO'}  {row.quantity}: {row.measured:.4g} {row.unit}"
+                f" (limit {row.tolerance:.4g})"
             )
         if hasattr(module, "figure"):
             pictures[name] = f"validation/{name}.svg"

@@ -25,8 +25,8 @@ def page(results: Mapping[str, Sequence[Row]], pictures: Mapping[str, str]) -> s
     """The Markdown of all cases; `pictures` maps a case to the path of its picture from the page."""
     parts = [
         "# Validation",
-        "References that nobody here wrote, and how near Klingel comes to them. Made by `make validate`; the rows with a\n"
-        "limit are tests. Data and their sources lie in `validation/` beside each case.",
+        "References that nobody here wrote, and how near Klingel comes to them. Made by `make validate`;\n"
+        "the rows with a limit are tests. Data and their sources lie in `validation/` beside each case.",
     ]
     for name, rows in results.items():
         module = case(name)

@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
+from klingel.contact.pair import profile_spec
 from klingel.drives import operating_point, running_resistance
 from klingel.scenario import Scenario
 from klingel.track import CANT_BASE, Track
@@ -136,12 +137,13 @@ def _wheelset(vehicle: Vehicle, axle: Axle) -> Spec:
 def _pair(scenario: Scenario) -> Spec:
     vehicle = scenario.vehicle
     return {
-        "wheel": {"named": vehicle.wheel_profile.name.lower()},
-        "rail": {"named": scenario.rail.lower()},
+        "wheel": profile_spec(scenario.wheel or vehicle.wheel_profile.name),
+        "rail": profile_spec(scenario.rail),
         "rail_inclination": scenario.rail_inclination,
         "gauge": scenario.gauge,
         "flange_back": vehicle.wheel_profile.flange_back_distance,
         "radius": vehicle.geometry.wheel_radius,
+        "normal": scenario.contact,
     }
 
 

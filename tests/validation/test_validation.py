@@ -1,7 +1,6 @@
 """Every validation case reaches every figure that was asked of it."""
 
 import pytest
-
 from validation.page import CASES, case, table
 
 

@@ -3,8 +3,10 @@ Left wheels are mirrored into the frame of the right one, in which profiles are 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -31,50 +33,54 @@ def pair(normal: str = "kik_piotrowski") -> WheelRailPair:
 
 def compared(path: Path, of: WheelRailPair) -> pd.DataFrame:
     """One row for every patch of CONTACT with ours nearest to it on the wheel; columns of both, in SI and radians."""
-    rows = pd.read_csv(path, comment="#")
+    rows = pd.read_csv(path, comment="#").to_dict("records")
     return pd.DataFrame(_patches(rows, of))
 
 
-def _patches(rows: pd.DataFrame, of: WheelRailPair) -> Iterator[dict[str, float | str]]:
-    for (load, yaw), group in rows.groupby(["Fz_N", "yaw_rad"]):
-        ours = of.contact(np.unique(group["y_ws_mm"]) * 1e-3, yaw=float(yaw), wheel_load=float(load))
-        for row in group.itertuples():
-            mine = ours[np.isclose(ours["y"], row.y_ws_mm * 1e-3, atol=1e-9) & (ours["side"] == row.side)]
-            sign = 1.0 if row.side == "right" else -1.0
-            y_wheel = sign * row.y_wheel_mm * 1e-3
-            near = mine.iloc[int(np.argmin(np.abs(mine["y_wheel"].to_numpy() - y_wheel)))]
-            fx, fy = _force(of, near, sign, float(yaw)) if hasattr(row, "Fx_N") else (np.nan, np.nan)
-            yield {
-                "y": row.y_ws_mm * 1e-3,
-                "side": row.side,
-                "outwards": sign * row.y_ws_mm * 1e-3,
-                "load": float(load),
-                "yaw": float(yaw),
-                "patches": len(mine),
-                "y_wheel": near["y_wheel"],
-                "y_wheel_contact": y_wheel,
-                "y_rail": near["y_rail"],
-                "y_rail_contact": sign * row.y_rail_mm * 1e-3,
-                "radius": near["rolling_radius"],
-                "radius_contact": row.rolling_radius_mm * 1e-3,
-                "normal_force": near["normal_force"],
-                "normal_force_contact": row.Fn_N,
-                "area": near["area"],
-                "area_contact": row.area_mm2 * 1e-6,
-                "pressure": near["pressure"],
-                "pressure_contact": row.pmax_MPa * 1e6,
-                "fx": fx,
-                "fx_contact": -getattr(row, "Fx_N", np.nan),
-                "fy": fy,
-                "fy_contact": -sign * getattr(row, "Fs_N", np.nan),
-            }
+def _patches(rows: Sequence[Mapping[Hashable, Any]], of: WheelRailPair) -> Iterator[dict[str, Any]]:
+    for load, yaw in sorted({(row["Fz_N"], row["yaw_rad"]) for row in rows}):
+        group = [row for row in rows if (row["Fz_N"], row["yaw_rad"]) == (load, yaw)]
+        places = sorted({row["y_ws_mm"] for row in group})
+        ours = of.contact([y * 1e-3 for y in places], yaw=yaw, wheel_load=load)
+        for row in group:
+            yield _patch(row, ours[np.isclose(ours["y"], row["y_ws_mm"] * 1e-3) & (ours["side"] == row["side"])], of)
+
+
+def _patch(row: Mapping[Hashable, Any], ours: pd.DataFrame, of: WheelRailPair) -> dict[str, Any]:
+    sign = 1.0 if row["side"] == "right" else -1.0
+    y_wheel = sign * row["y_wheel_mm"] * 1e-3
+    near = ours.iloc[int(np.argmin(np.abs(ours["y_wheel"].to_numpy() - y_wheel)))]
+    fx, fy = _force(of, near, sign, row["yaw_rad"])
+    return {
+        "y": row["y_ws_mm"] * 1e-3,
+        "side": row["side"],
+        "load": row["Fz_N"],
+        "yaw": row["yaw_rad"],
+        "patches": len(ours),
+        "y_wheel": near["y_wheel"],
+        "y_wheel_contact": y_wheel,
+        "y_rail": near["y_rail"],
+        "y_rail_contact": sign * row["y_rail_mm"] * 1e-3,
+        "radius": near["rolling_radius"],
+        "radius_contact": row["rolling_radius_mm"] * 1e-3,
+        "normal_force": near["normal_force"],
+        "normal_force_contact": row["Fn_N"],
+        "area": near["area"],
+        "area_contact": row["area_mm2"] * 1e-6,
+        "pressure": near["pressure"],
+        "pressure_contact": row["pmax_MPa"] * 1e6,
+        "fx": fx,
+        "fx_contact": -row.get("Fx_N", math.nan),
+        "fy": fy,
+        "fy_contact": -sign * row.get("Fs_N", math.nan),
+    }
 
 
 def _force(of: WheelRailPair, patch: pd.Series, sign: float, yaw: float) -> tuple[float, float]:
     """Creep forces on the wheel that rolls straight at the angular speed V/r0, in the frame of a right wheel.
 
-    xi = (V - omega r)/V_ref, eta = -psi/cos(delta) V/V_ref, phi = -omega sin(gamma)/V_ref with V_ref = (V + omega r)/2, r of the
-    unstrained wheel and gamma the contact angle against the axle.
+    xi = (V - omega r)/V_ref, eta = -psi/cos(delta) V/V_ref, phi = -omega sin(gamma)/V_ref with V_ref = (V + omega r)/2,
+    r of the unstrained wheel and gamma the contact angle against the axle.
     """
     angle = patch["angle"]
     radius = patch["rolling_radius"] + patch["penetration"] / np.cos(angle)

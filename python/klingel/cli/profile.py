@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
+from typing import Literal
 
 from klingel.contact import Profile, WheelRailPair
 from klingel.errors import InputError
@@ -53,7 +54,7 @@ def draw(
     from klingel.plot.contact import overview
     from klingel.plot.style import render
 
-    form = "svg" if out.suffix == ".svg" else "png"
+    form: Literal["svg", "png"] = "svg" if out.suffix == ".svg" else "png"
     return write_whole(out, render(overview(pair, wheel_load), form, name=out.stem))
 
 

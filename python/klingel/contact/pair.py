@@ -184,14 +184,17 @@ class WheelRailPair:
     def equivalent_conicity(self, amplitude: ArrayLike) -> float | Values:
         """Equivalent conicity at an amplitude of lateral motion [m], by the integration of EN 15302, rigid contact.
 
-        Slope of the cone with the same wavelength. Errors: InputError for amplitudes that are not positive or over 15 mm.
+        Slope of the cone with the same wavelength.
+        Errors: InputError for amplitudes that are not positive or over 15 mm.
         """
         amplitudes = _finite("amplitude", amplitude)
         return _shaped(_heard(lambda: self._core.equivalent_conicity(amplitudes.reshape(-1))), amplitudes)
 
 
-def profile_spec(profile: Profile) -> dict[str, Any]:
-    """The profile as the core's spec has it."""
+def profile_spec(profile: Profile | str) -> dict[str, Any]:
+    """A profile, or the name of a standard one, as the core's spec has it."""
+    if isinstance(profile, str):
+        return {"named": profile.lower()}
     return {"points": {"y": profile.y.tolist(), "z": profile.z.tolist()}}
 
 

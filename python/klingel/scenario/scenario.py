@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, Protocol, get_args
 
+from klingel.contact import Profile
 from klingel.errors import InputError, Problem, nearest
 from klingel.track import Track
 from klingel.units import Quantity, to_si
@@ -17,6 +18,9 @@ from klingel.vehicle import Vehicle
 
 CreepLaw = Literal["fastsim", "polach", "shen_hedrick_elkins", "linear"]
 Contact = Literal["hertz", "kik_piotrowski"]
+
+RAILS = ("60E1", "UIC60")
+"""Rail profiles known by name."""
 
 ELEMENTS_MIN, ELEMENTS_MAX = 2, 40
 """Coarsest and finest FASTSIM grid: elements along, and across, the ellipse."""
@@ -169,6 +173,14 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
     if scenario.step > 0.0:
         yield from _step_problems(scenario)
     yield from _run_problems(scenario)
+
+
+def _profile_problems(scenario: Scenario) -> Iterator[Problem]:
+    """Profiles are profiles; a rail may be given by its name."""
+    if not (scenario.wheel is None or isinstance(scenario.wheel, Profile)):
+        yield Problem("wheel", scenario.wheel, "is no profile", "give a klingel.contact.Profile")
+    if not isinstance(scenario.rail, Profile) and scenario.rail not in RAILS:
+        yield Problem("rail", scenario.rail, "is not known", nearest(scenario.rail, RAILS))
 
 
 def _step_problems(scenario: Scenario) -> Iterator[Problem]:
