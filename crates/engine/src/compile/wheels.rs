@@ -90,7 +90,7 @@ fn profile(place: &str, spec: &ProfileSpec) -> Result<Result<Profile, ContactErr
     })
 }
 
-/// A standard profile by its name.
+/// A standard profile by its name; `cone(0.05)` is a cone of that slope.
 ///
 /// # Errors
 /// `EngineError::Value` for a name that is not known.
@@ -100,6 +100,10 @@ pub fn named_profile(place: &str, name: &str) -> Result<Profile, EngineError> {
         "60e1" => Ok(Profile::rail_60e1()),
         "54e1" => Ok(Profile::rail_54e1()),
         "uic60" => Ok(Profile::rail_uic60()),
-        other => Err(value(place, other, "choose s1002, 60e1, 54e1 or uic60, or give points")),
+        other => {
+            let slope = other.strip_prefix("cone(").and_then(|rest| rest.strip_suffix(')')?.parse().ok());
+            let cone = slope.and_then(|slope| Profile::cone(slope).ok());
+            cone.ok_or_else(|| value(place, other, "choose s1002, cone(0.05), 60e1, 54e1 or uic60, or give points"))
+        }
     }
 }
