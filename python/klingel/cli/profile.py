@@ -8,7 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Literal
 
-from klingel.contact import Profile, WheelRailPair
+from klingel.contact import WheelRailPair, profile_of
 from klingel.errors import InputError
 from klingel.report.contact import contact_report
 from klingel.report.files import write_whole
@@ -39,8 +39,8 @@ def draw(
     if not out.parent.is_dir():
         raise InputError.single("out", str(out), "has no folder to be written to", remedy="make it, or choose another")
     pair = WheelRailPair(
-        Profile.of(wheel, "wheel", units=units),
-        Profile.of(rail, "rail", units=units),
+        profile_of(wheel, "wheel", units=units),
+        profile_of(rail, "rail", units=units),
         rail_inclination=slope(inclination),
         gauge=gauge,
         flange_back=flange_back,

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, Protocol, get_args
 
-from klingel.contact import Profile
+from klingel.contact import AS_PUBLISHED, CreepOptions, Profile
 from klingel.errors import InputError, Problem, nearest
 from klingel.track import Track
 from klingel.units import Quantity, to_si
@@ -44,8 +44,8 @@ class Scenario:
     vehicle: of the library or of a file; track: where it runs; speed: at the start, held by a slow ideal force;
     control: strategy of `klingel.control`, None for none; friction: coefficient of all contacts; contact: normal
     contact by `hertz` (an ellipse in every zone of the wheel) or `kik_piotrowski` (not Hertzian), equally fast;
-    creep_law with creep_elements (along, across) for FASTSIM; wheel: profile of all wheels, None for the vehicle's;
-    rail: its profile or the name of a standard one; rail_inclination (slope, positive leans inwards), gauge;
+    creep_law with creep_elements (along, across) for FASTSIM and its creep_options; wheel: profile of all wheels, None
+    for the vehicle's; rail: its profile or the name of a standard one; rail_inclination (slope, positive leans inwards), gauge;
     step: of the integrator; record_interval: of the results; duration: None runs to the end of the track.
     Errors: InputError with every problem.
 
@@ -63,6 +63,7 @@ class Scenario:
     contact: Contact
     creep_law: CreepLaw
     creep_elements: tuple[int, int]
+    creep_options: CreepOptions
     wheel: Profile | None
     rail: str | Profile
     rail_inclination: float
@@ -82,6 +83,7 @@ class Scenario:
         contact: Contact = "hertz",
         creep_law: CreepLaw = "fastsim",
         creep_elements: tuple[int, int] = (10, 10),
+        creep_options: CreepOptions = AS_PUBLISHED,
         wheel: Profile | None = None,
         rail: str | Profile = "60E1",
         rail_inclination: Quantity = 0.025,
@@ -99,6 +101,7 @@ class Scenario:
             "contact": contact,
             "creep_law": creep_law,
             "creep_elements": _as_tuple(creep_elements),
+            "creep_options": creep_options,
             "wheel": wheel,
             "rail": rail,
             "rail_inclination": to_si(rail_inclination, "1", key="rail_inclination"),
@@ -167,6 +170,8 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
         if value not in known:
             yield Problem(key, value, "is not known", nearest(value, known))
     yield from _profile_problems(scenario)
+    if not isinstance(scenario.creep_options, CreepOptions):
+        yield Problem("creep_options", scenario.creep_options, "are none", "give klingel.contact.CreepOptions")
     if not _is_grid(scenario.creep_elements):
         remedy = f"give two whole numbers from {ELEMENTS_MIN} to {ELEMENTS_MAX}"
         yield Problem("creep_elements", scenario.creep_elements, "is no grid (along, across)", remedy)

@@ -41,6 +41,7 @@ pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
     let hold = c.hold()?;
     let material = Material::STEEL;
     let wheels = c.wheels(&material)?;
+    let (creep, falling_friction) = wheels::creep_law(&spec.creep, &material)?;
     let Compiler { bodies, rotors, joints, states, .. } = c;
     let joint_pairs = mirror_partners(&joints);
     Ok(Model {
@@ -61,7 +62,8 @@ pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
         drives,
         drag,
         hold,
-        creep: wheels::creep_law(spec, &material)?,
+        creep,
+        falling_friction,
         contact_dissipation: spec.creep.contact_dissipation,
         poles: states.poles,
         state_names: states.names,

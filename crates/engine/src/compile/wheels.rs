@@ -4,8 +4,9 @@
 use super::{Compiler, positive, value};
 use crate::error::EngineError;
 use crate::model::Wheel;
-use crate::spec::{PairSpec, ProfileSpec, Side, Spec};
+use crate::spec::{CreepSpec, PairSpec, ProfileSpec, Side, Spec};
 use crate::tables::{self, Prepared};
+use klingel_physics::contact::creep::{CreepError, CreepOptions, FallingFriction, PolachReduction, SlopeReduction};
 use klingel_physics::contact::{ContactError, CreepForce, CreepLaw, Material, PairGeometry, Profile};
 use std::sync::Arc;
 
@@ -55,15 +56,21 @@ pub fn prepare(spec: &Spec) -> Result<Vec<Prepared>, EngineError> {
     Ok(tables_of(spec, &Material::STEEL)?.into_iter().map(|(_, prepared)| prepared).collect())
 }
 
-pub(super) fn creep_law(spec: &Spec, material: &Material) -> Result<CreepForce, EngineError> {
-    let [nx, ny] = spec.creep.elements;
-    let law = match spec.creep.law.as_str() {
-        "linear" => CreepLaw::Linear,
-        "polach" => CreepLaw::Polach,
-        "fastsim" => CreepLaw::Fastsim { nx, ny },
-        other => return Err(value("creep.law", other, "choose linear, polach or fastsim")),
+/// The creep law with its options, and how friction falls.
+pub(super) fn creep_law(
+    spec: &CreepSpec,
+    material: &Material,
+) -> Result<(CreepForce, Option<FallingFriction>), EngineError> {
+    let refused = |e: CreepError| value("creep", e, "change the creep law's settings");
+    let law = CreepLaw::named(&spec.law, spec.elements)
+        .ok_or_else(|| value("creep.law", &spec.law, &format!("choose {}", CreepLaw::NAMES.join(", "))))?;
+    let options = CreepOptions {
+        reduction: spec.reduction.map(|[adhesion, slip]| PolachReduction { adhesion, slip }),
+        blended: spec.blended,
+        slope: spec.slope.map(|[initial, limit, decay]| SlopeReduction { initial, limit, decay }),
     };
-    CreepForce::new(law, material).map_err(|e| value("creep", e, "change the creep law's settings"))
+    let falling = spec.falling.map(|[ratio, decay]| FallingFriction::new(ratio, decay)).transpose();
+    Ok((CreepForce::with_options(law, options, material).map_err(refused)?, falling.map_err(refused)?))
 }
 
 /// The profiles of a pair in their place.

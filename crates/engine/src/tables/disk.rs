@@ -124,7 +124,10 @@ mod tests {
         }
         fs::write(place(&folder, &format!("{}", KEPT + 1)), [0; 42]).unwrap();
         let kept = check(&folder);
-        assert_eq!((kept.len(), kept.iter().filter(|(_, size, whole)| *size == 42 && *whole).count()), (KEPT, KEPT - 1));
+        assert_eq!(
+            (kept.len(), kept.iter().filter(|(_, size, whole)| *size == 42 && *whole).count()),
+            (KEPT, KEPT - 1)
+        );
         assert!(read(&folder, &format!("{}", KEPT + 2)).is_some());
         fs::remove_dir_all(folder).unwrap();
     }
