@@ -11,6 +11,9 @@ use super::{ContactError, PairGeometry, Profile};
 /// Spacing of the wheel points of the rigid view, m.
 const SPACING: f64 = 2e-5;
 
+/// A wheel that touches higher on its flange than this share of its height runs on the flange's tip.
+const CLIMBED: f64 = 0.95;
+
 /// A wheelset of rigid wheels on rigid rails, its roll following from both wheels touching.
 ///
 /// ```
@@ -66,7 +69,15 @@ impl Side {
     /// The first contact at a `shift` of the tape circle to the field side and a `roll` that lowers that side.
     fn touch(&self, shift: f64, roll: f64) -> Result<RigidContact, ContactError> {
         let gaps = PairGeometry::gaps(&self.rail, &self.strips, shift, roll);
-        first_touch(&self.strips, &gaps, self.radius).ok_or(ContactError::NoContact { shift, roll })
+        let touch = first_touch(&self.strips, &gaps, self.radius).ok_or(ContactError::NoContact { shift, roll })?;
+        // The strips begin at the tip of the flange.
+        let (on_wheel, most) = (touch.radius - self.radius, CLIMBED * self.strips.z[0]);
+        if on_wheel > most {
+            let what = "radius increment at the contact (m)".into();
+            let remedy = "the flange runs on top of the rail; give a smaller displacement".into();
+            return Err(ContactError::OutOfRange { what, value: on_wheel, least: -0.01, most, remedy });
+        }
+        Ok(touch)
     }
 }
 
