@@ -1,5 +1,6 @@
 """Types of the compiled core."""
 
+from collections.abc import Sequence
 from typing import Any, Literal, final
 
 import numpy as np
@@ -13,6 +14,8 @@ __all__ = [
     "build_info",
     "cache",
     "check",
+    "creep_force",
+    "creep_laws",
     "prepare",
     "profile",
     "simulate",
@@ -43,5 +46,18 @@ def simulate(spec: str, progress: Progress | None = None) -> dict[str, Any]: ...
 def check(spec: str) -> None: ...
 def prepare(spec: str) -> list[_Prepared]: ...
 def cache() -> tuple[str, list[tuple[str, int, bool]]] | None: ...
+def creep_force(
+    law: str,
+    columns: Sequence[_Floats],
+    *,
+    shear_modulus: float,
+    poisson: float,
+    elements: Sequence[int],
+    reduction: Sequence[float] | None,
+    blended: bool,
+    slope: Sequence[float] | None,
+    falling: Sequence[float] | None,
+) -> list[_Floats]: ...
+def creep_laws() -> list[str]: ...
 def profile(name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 def build_info() -> dict[str, Any]: ...

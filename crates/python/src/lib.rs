@@ -1,6 +1,7 @@
 //! The Python face of the core: specs in as JSON, arrays out; the interpreter is free while the core works.
 //! Every message of the core is passed on as it is; `klingel.errors` sorts them.
 
+mod creep;
 mod pair;
 
 use klingel_engine::{EngineError, Spec};
@@ -145,6 +146,8 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(prepare, m)?)?;
     m.add_function(wrap_pyfunction!(cache, m)?)?;
     m.add_function(wrap_pyfunction!(profile, m)?)?;
+    m.add_function(wrap_pyfunction!(creep::creep_force, m)?)?;
+    m.add_function(wrap_pyfunction!(creep::creep_laws, m)?)?;
     m.add_function(wrap_pyfunction!(build_info, m)?)?;
     m.add("CoreError", m.py().get_type::<CoreError>())?;
     m.add("Cancelled", m.py().get_type::<Cancelled>())?;

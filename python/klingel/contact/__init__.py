@@ -2,7 +2,8 @@
 Wheel: y from the tape circle, + to the field side, z radius increment. Rail: y from its axis, z down from its top."""
 
 from klingel.contact.options import AS_PUBLISHED, CreepOptions
+from klingel.contact.creep import creep_force
 from klingel.contact.pair import Prepared, WheelRailPair
 from klingel.contact.profile import Profile
 
-__all__ = ["AS_PUBLISHED", "CreepOptions", "Prepared", "Profile", "WheelRailPair"]
+__all__ = ["AS_PUBLISHED", "CreepOptions", "Prepared", "Profile", "WheelRailPair", "creep_force"]

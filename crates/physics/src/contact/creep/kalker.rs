@@ -54,10 +54,12 @@ impl Kalker {
     /// The coefficients for Poisson's ratio `poisson` (0 to 0.5): 1/C is quadratic in it, as in CONTACT.
     pub fn new(poisson: f64) -> Self {
         let curves = Curves::new(poisson);
-        let node = |i: usize| curves.value_and_slope((2.0 * i as f64 / INTERVALS as f64 - 1.0) * LIMIT.ln());
-        let cubics = (0..INTERVALS)
-            .map(|i| {
-                let ((lo, from), (hi, to)) = (node(i), node(i + 1));
+        let place = |i: usize| (2.0 * i as f64 / INTERVALS as f64 - 1.0) * LIMIT.ln();
+        let nodes: Vec<_> = (0..=INTERVALS).map(|i| curves.value_and_slope(place(i))).collect();
+        let cubics = nodes
+            .windows(2)
+            .map(|pair| {
+                let ((lo, from), (hi, to)) = (pair[0], pair[1]);
                 core::array::from_fn(|k| {
                     let (rise, s0, s1) = (hi[k] - lo[k], from[k] * interval(), to[k] * interval());
                     [lo[k], s0, 3.0 * rise - 2.0 * s0 - s1, s0 + s1 - 2.0 * rise]
@@ -110,13 +112,24 @@ struct Curves {
     x: Vec<f64>,
     c: Vec<[f64; 4]>,
     slope: Vec<[f64; 4]>,
+    /// At the first and the last row: ln(C / asymptote) and its slope over the distance from there.
+    joints: [[[f64; 2]; 4]; 2],
 }
 
 impl Curves {
     fn new(poisson: f64) -> Self {
         let (x, c): (Vec<f64>, Vec<[f64; 4]>) = (0..TABLE.len()).map(|i| row(i, poisson)).unzip();
-        let slope = (0..x.len()).map(|i| core::array::from_fn(|k| parabola_slope(&x, |j| c[j][k], i))).collect();
-        Self { poisson, x, c, slope }
+        let slope: Vec<[f64; 4]> =
+            (0..x.len()).map(|i| core::array::from_fn(|k| parabola_slope(&x, |j| c[j][k], i))).collect();
+        let joints = [0, x.len() - 1].map(|end| {
+            let at = |x: f64| asymptotes(poisson, x);
+            let (joint, up, down) = (at(x[end]), at(x[end] + STEP), at(x[end] - STEP));
+            core::array::from_fn(|k| {
+                let rise = slope[end][k] - (up[k] / down[k]).ln() / (2.0 * STEP);
+                [c[end][k] - joint[k].ln(), rise * x[end].signum()]
+            })
+        });
+        Self { poisson, x, c, slope, joints }
     }
 
     /// The four coefficients at x = ln(a/b) and their slopes over x.
@@ -129,7 +142,7 @@ impl Curves {
     fn at(&self, x: f64) -> [f64; 4] {
         let last = self.x.len() - 1;
         if x < self.x[0] || x > self.x[last] {
-            return self.beyond(x, if x < 0.0 { 0 } else { last });
+            return self.beyond(x);
         }
         let k = self.x.partition_point(|&row| row <= x).clamp(1, last) - 1;
         let h = self.x[k + 1] - self.x[k];
@@ -141,21 +154,18 @@ impl Curves {
         })
     }
 
-    /// The asymptote times a correction that continues value and slope of the table's `end` and fades beyond it.
+    /// The asymptote times a correction that continues value and slope of the table's end and fades beyond it.
     ///
     /// With t the distance to the end in ln(a/b): ln(C / asymptote) = (d + (d' + r d) t) exp(-r t). Rates r of 2 below and
     /// of 1 above: the correction goes with (a/b)^2 and with b/a, about as the table itself nears its asymptotes.
-    fn beyond(&self, x: f64, end: usize) -> [f64; 4] {
-        let rate = if x < 0.0 { 2.0 } else { 1.0 };
-        let (x0, side) = (self.x[end], x.signum());
-        let t = (x - x0).abs();
-        let at = |x: f64| asymptotes(self.poisson, x);
-        let (joint, up, down) = (at(x0), at(x0 + STEP), at(x0 - STEP));
-        let asymptote = at(x);
+    fn beyond(&self, x: f64) -> [f64; 4] {
+        let (rate, end, joint) =
+            if x < 0.0 { (2.0, self.x[0], &self.joints[0]) } else { (1.0, self.x[self.x.len() - 1], &self.joints[1]) };
+        let (asymptote, t) = (asymptotes(self.poisson, x), (x - end).abs());
+        let fade = (-rate * t).exp();
         core::array::from_fn(|k| {
-            let d = self.c[end][k] - joint[k].ln();
-            let slope = (self.slope[end][k] - (up[k] / down[k]).ln() / (2.0 * STEP)) * side;
-            asymptote[k] * ((d + (slope + rate * d) * t) * (-rate * t).exp()).exp()
+            let [d, slope] = joint[k];
+            asymptote[k] * ((d + (slope + rate * d) * t) * fade).exp()
         })
     }
 }
