@@ -182,7 +182,8 @@ def _tuple(value: Any, length: int, *kinds: type) -> bool:
         return True
     if not isinstance(value, (tuple, list)) or len(value) != length:
         return False
-    return all(isinstance(x, kinds or (int, float, np.number)) and 0 <= x < math.inf for x in value)
+    numbers: list[Any] = [x for x in value if isinstance(x, kinds or (int, float, np.number))]
+    return len(numbers) == length and all(0 <= x < math.inf for x in numbers)
 
 
 POSITIVE = ("a", "b", "shear_modulus")
