@@ -125,6 +125,21 @@ def test_miniprof_wheel(tmp_path: Path, side: float, up: float, columns: str) ->
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize("head", ["", "WheelDiameterTaperline=69.0000"])
+def test_miniprof_wheel_from_its_flange_back(tmp_path: Path, side: float, head: str) -> None:
+    y, z = coarse(WHEEL)
+    from_back = y + (69.0 if head else 70.0)
+    same(Profile.read(written(tmp_path / "wheel.whl", miniprof(side * from_back[::-1], z[::-1], head=head))), y, z)
+
+
+def test_miniprof_of_the_first_devices(tmp_path: Path) -> None:
+    y, z = coarse(WHEEL)
+    rows = "\n".join(f"{a:.7f}    {b:.7f}" for a, b in zip(y + 70.0, z, strict=True))
+    head = '#MINIWHEELPROF\nwheel.whl\nMINIPROF 2020\nCar Number..:\n" 32.58 37.11 14.71\n(Sd/Sh/qR)'
+    same(Profile.read(written(tmp_path / "wheel.whl", f"{head}\n\n{rows}\n")), y, z)
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
 @pytest.mark.parametrize("up", [-1.0, 1.0])
 def test_miniprof_rail_leans_to_its_gauge_side(tmp_path: Path, side: float, up: float) -> None:
     y, z = leaning()

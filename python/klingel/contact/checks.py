@@ -48,7 +48,10 @@ def point_problems(y: Values, z: Values) -> Iterator[Problem]:
     if np.any(np.diff(y) <= 0.0):
         where = int(np.argmax(np.diff(y) <= 0.0)) + 2
         yield Problem(
-            f"point {where}", float(y[where - 1]), "y does not rise", "sort the points, cut overhanging parts"
+            f"point {where}",
+            float(y[where - 1]),
+            "y does not rise",
+            "remove it, sort the points or cut overhanging parts",
         )
     if len(y):
         yield from size_problems(y)

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import csv
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from klingel.contact import read_miniprof, read_simpack
-from klingel.contact.checks import point_problems
+from klingel.contact.checks import point_problems, size_problems
 from klingel.contact.read_points import Drawn, Points, number
 from klingel.contact.read_side import right_hand, trimmed
 from klingel.errors import InputError
@@ -31,12 +32,16 @@ def read_profile(path: Path, units: str | None) -> Points:
         raise InputError.single("", None, "no such file", remedy="check the path", file=str(path))
     try:
         drawn = _drawn(path, _text(path), units)
-        if drawn.outline:
+        if drawn.outline and np.isfinite(drawn.y).all():
+            # Before points are taken for repeated ones: in a wrong unit all of them may be.
+            if problems := list(size_problems(drawn.y)):
+                raise InputError(problems)
             drawn = trimmed(drawn)
         problems = list(point_problems(*_rising(drawn)))
         if problems:
             raise InputError(problems)
-        return right_hand(Drawn(*_rising(drawn), kind=drawn.kind, sided=drawn.sided, outline=drawn.outline))
+        y, z = _rising(drawn)
+        return right_hand(replace(drawn, y=y, z=z))
     except InputError as error:
         raise error.in_file(str(path)) from None
 

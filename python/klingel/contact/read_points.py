@@ -27,7 +27,8 @@ class Drawn:
     """What a file draws.
 
     y, z: [m], in the file's order and axes; kind: what the file says it is, None if nothing; sided: whether its format
-    says where the field side is; outline: whether it may go on over upright ends, which are then cut.
+    says where the field side is; outline: whether it may go on over upright ends, which are then cut; origins: places
+    of a wheel's tape circle [m] that the format knows, of which the content tells the right one.
     """
 
     y: Values
@@ -35,6 +36,7 @@ class Drawn:
     kind: Kind | None
     sided: bool
     outline: bool
+    origins: tuple[float, ...] = (0.0,)
 
 
 def number(row: Sequence[str], index: int) -> tuple[float, float]:

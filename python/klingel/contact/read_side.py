@@ -4,6 +4,7 @@ Everything follows from the shape or from the format's own convention; where nei
 from __future__ import annotations
 
 import logging
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,14 +17,15 @@ LEAN = 0.008
 towards the gauge side (1:40 makes 15 mm on a crown of radius 300 mm); wear makes less."""
 EVEN = 0.001
 """Sides that differ by less [m] are alike: the rail is its own mirror image."""
+REPEATED = 1.5e-5
+"""Points of an outline that lie closer together [m] are one point: devices give them to 0.01 mm."""
 
 LOG = logging.getLogger("klingel")
 
 
 def right_hand(drawn: Drawn) -> Points:
     """The canonical points of what is drawn, y rising; errors: InputError with every reason against."""
-    turned = [(sy, sz, _turned(drawn, sy, sz)) for sz in (1.0, -1.0) for sy in (1.0, -1.0)]
-    wheels = [(sy, sz, p) for sy, sz, p in turned if not any(wheel_problems(*p))]
+    wheels = [way for way in _ways(drawn) if not any(wheel_problems(*way[2]))]
     rails = [p for p in (_turned(drawn, 1.0, sz) for sz in (1.0, -1.0)) if _is_head(p)]
     found: Kind | None = "wheel" if wheels else "rail" if rails else None
     if drawn.kind is not None and found is not None and found != drawn.kind:
@@ -51,7 +53,7 @@ def trimmed(drawn: Drawn) -> Drawn:
     if len(y) > 1 and y[0] > y[-1]:
         y, z = y[::-1], z[::-1]
     if len(y) > 2:
-        kept = np.concatenate([[True], np.hypot(np.diff(y), np.diff(z)) > 1e-7])
+        kept = np.concatenate([[True], np.hypot(np.diff(y), np.diff(z)) > REPEATED])
         y, z = y[kept], z[kept]
         # The running surface: everything between 10 % and 90 % of the width keeps its points.
         low, high = float(np.min(y)), float(np.max(y))
@@ -63,11 +65,17 @@ def trimmed(drawn: Drawn) -> Drawn:
             while last < len(y) - 1 and y[last + 1] > y[last]:
                 last += 1
             y, z = y[first : last + 1], z[first : last + 1]
-    return Drawn(y, z, kind=drawn.kind, sided=drawn.sided, outline=drawn.outline)
+    return replace(drawn, y=y, z=z)
 
 
-def _turned(drawn: Drawn, sy: float, sz: float) -> Points:
-    y, z = sy * drawn.y, sz * drawn.z
+def _ways(drawn: Drawn) -> list[tuple[float, float, Points]]:
+    """Every way to take a wheel: signs of y and z, and the points then."""
+    signs = [(sy, sz) for sz in (1.0, -1.0) for sy in (1.0, -1.0)]
+    return [(sy, sz, _turned(drawn, sy, sz, origin)) for origin in drawn.origins for sy, sz in signs]
+
+
+def _turned(drawn: Drawn, sy: float, sz: float, origin: float = 0.0) -> Points:
+    y, z = sy * (drawn.y - origin), sz * drawn.z
     return Points(y, z) if sy > 0.0 else Points(y[::-1], z[::-1])
 
 
@@ -112,7 +120,7 @@ def _why_not(drawn: Drawn) -> list[Problem]:
 
     def fewest(kind: Kind) -> list[Problem]:
         check = wheel_problems if kind == "wheel" else rail_problems
-        ways = [list(check(*_turned(drawn, sy, sz))) for sz in (1.0, -1.0) for sy in (1.0, -1.0)]
+        ways = [list(check(*points)) for _, _, points in _ways(drawn)]
         return [Problem(f"as a {kind}: {p.key}", p.value, p.message, p.remedy) for p in min(ways, key=len)]
 
     kinds: tuple[Kind, ...] = ("wheel", "rail") if drawn.kind is None else (drawn.kind,)
