@@ -2,7 +2,7 @@
 //! What the rows hold, and how they are read, is said in `table`.
 
 use super::geometry::{RigidContact, Strips, first_touch, highest};
-use super::normal::Solver;
+use super::normal::{Guess, Solver};
 use super::spline::{Axis, sharpen};
 use super::table::{DEPTH, ROLL, SHIFT};
 use super::zones::WheelZones;
@@ -14,9 +14,9 @@ const ROLL_INTERVALS: usize = 24;
 const DEPTH_INTERVALS: usize = 14;
 /// A zone that finds no rail below it counts as this far away, m.
 const FAR: f64 = 0.03;
-/// A zone farther than this behind the first one to touch has no loads: before it is reached the others are deeper
-/// than their tables; 0.1 mm of shift move it by less than 0.3 mm.
-const REACH: f64 = 3e-3;
+/// A zone that is this much farther away than the depth at which another one leaves its table has no loads: it is never
+/// reached; 0.1 mm of shift move it by less than 0.3 mm.
+const REACH: f64 = 8e-4;
 
 impl ContactTable {
     /// Builds the tables in parallel.
@@ -35,10 +35,10 @@ impl ContactTable {
                 let (shift, roll) = (axes[0].node(i / axes[1].len), axes[1].node(i % axes[1].len));
                 let gaps = zones.strips.each_ref().map(|strips| PairGeometry::gaps(&rail, strips, shift, roll));
                 let touch = [0, 1, 2].map(|z| first_touch(&zones.strips[z], &gaps[z], pair.radius));
-                let lowest = touch.iter().flatten().fold(FAR, |low, t| low.min(t.gap));
+                let deepest = touch.iter().zip(DEPTH).filter_map(|(t, d)| t.map(|t| t.gap + d)).fold(FAR, f64::min);
                 [0, 1, 2].map(|z| {
                     let column = Column::new(touch[z], roll, depth.len);
-                    if column.gap > lowest + REACH {
+                    if column.gap > deepest + REACH {
                         return column;
                     }
                     let solver = Solver { normal, radius: pair.radius, pair_modulus: material.pair_modulus() };
@@ -95,13 +95,13 @@ impl Column {
         let first = gaps.iter().position(near).unwrap_or(0);
         let end = gaps.iter().rposition(near).map_or(first, |e| e + 1);
         let strips = strips.part(first, end);
-        let mut epsilon = 0.5;
+        let mut guess = Guess::default();
         let mut penetration = Vec::with_capacity(end - first);
         for (i, row) in self.rows.iter_mut().enumerate().rev().take_while(|(i, _)| *i > 1) {
             let d = axis.node(i).powi(2) * deepest;
             penetration.clear();
             penetration.extend(gaps[first..end].iter().zip(&strips.cos).map(|(g, cos)| (self.gap + d - g) * cos));
-            if let Some(l) = solver.load(&strips, &penetration, &mut epsilon) {
+            if let Some(l) = solver.load(&strips, &penetration, &mut guess) {
                 let (root, detail) = (d.sqrt(), l.detail);
                 let [a, b, pressure] = [l.a, l.b, detail.pressure].map(|x| x / root);
                 *row = [l.force / (d * root), l.angle, l.y, solver.radius + l.z, a, b, detail.area / d, pressure];

@@ -182,7 +182,7 @@ fn tables_smooth_the_direct_solution_by_little() {
             let penetration: Vec<f64> = gaps.iter().zip(&strips.cos).map(|(g, cos)| (w - g) * cos).collect();
             let modulus = Material::STEEL.pair_modulus();
             let solver = normal::Solver { normal: NormalContact::Hertz, radius: 0.46, pair_modulus: modulus };
-            let direct = solver.load(strips, &penetration, &mut 0.5).unwrap();
+            let direct = solver.load(strips, &penetration, &mut normal::Guess::default()).unwrap();
             force += (patch.normal_force / direct.force - 1.0).powi(2);
             place += (patch.y_wheel - direct.y).powi(2);
             count += 1.0;
