@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from klingel.contact.pair import profile_spec
+from klingel.contact import profile_of
 from klingel.drives import operating_point, running_resistance
 from klingel.scenario import Scenario
 from klingel.track import CANT_BASE, Track
@@ -137,9 +137,10 @@ def _wheelset(vehicle: Vehicle, axle: Axle) -> Spec:
 
 def _pair(scenario: Scenario) -> Spec:
     vehicle = scenario.vehicle
+    wheel = scenario.wheel or profile_of(vehicle.wheel_profile.name, "wheel")
     return {
-        "wheel": profile_spec(scenario.wheel or vehicle.wheel_profile.name),
-        "rail": profile_spec(scenario.rail),
+        "wheel": wheel.spec(),
+        "rail": scenario.rail.spec(),
         "rail_inclination": scenario.rail_inclination,
         "gauge": scenario.gauge,
         "flange_back": vehicle.wheel_profile.flange_back_distance,

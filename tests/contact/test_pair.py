@@ -1,4 +1,4 @@
-"""A wheel-rail pair: columns and units, mirror image, equilibrium, yaw, agreement of rigid and light contact, refusals."""
+"""A wheel-rail pair: columns and units, mirror image, equilibrium, yaw, rigid against light contact, refusals."""
 
 import logging
 from typing import Any
@@ -23,7 +23,8 @@ Y = np.linspace(-8e-3, 8e-3, 33)
 def test_columns_carry_units(pair: WheelRailPair) -> None:
     frame = pair.contact([0.0, 5e-3], wheel_load=5e4)
     assert list(frame.columns) == list(frame.attrs["units"])
-    assert set(frame["side"]) == {"left", "right"} and set(frame["zone"]) <= {"tread", "root", "flange"}
+    assert set(frame["side"]) == {"left", "right"}
+    assert set(frame["zone"]) <= {"tread", "root", "flange"}
     assert frame.attrs["units"]["pressure"] == "Pa"
     assert np.isfinite(frame.drop(columns=["side", "zone"]).to_numpy(dtype=float)).all()
 
@@ -52,10 +53,12 @@ def test_mean_pressure_is_below_the_largest(pair: WheelRailPair) -> None:
 def test_difference_of_rolling_radii_is_odd_and_positive_to_the_right(pair: WheelRailPair) -> None:
     for load in (None, 5e4):
         difference = pair.rolling_radius_difference(Y, wheel_load=load)
-        assert isinstance(difference, np.ndarray) and (difference[Y > 0] > 0).all()
+        assert isinstance(difference, np.ndarray)
+        assert (difference[Y > 0] > 0).all()
         np.testing.assert_allclose(difference, -difference[::-1], atol=1e-7)
         single = pair.rolling_radius_difference(3e-3, wheel_load=load)
-        assert isinstance(single, float) and single == pytest.approx(difference[22], rel=1e-9)
+        assert isinstance(single, float)
+        assert single == pytest.approx(difference[22], rel=1e-9)
 
 
 def test_a_light_load_touches_where_rigid_bodies_do(pair: WheelRailPair) -> None:
@@ -72,7 +75,9 @@ def test_yaw_carries_the_flange_contact_ahead_of_the_axle(pair: WheelRailPair) -
     for load in (None, 5e4):
         flange = pair.contact(7.5e-3, yaw=8e-3, wheel_load=load).query("side == 'right'").iloc[-1]
         expected = flange["rolling_radius"] * np.tan(flange["angle"]) * 8e-3
-        assert flange["angle"] > 1.0 and flange["x"] == pytest.approx(expected, rel=1e-3) and flange["x"] > 5e-3
+        assert flange["angle"] > 1.0
+        assert flange["x"] == pytest.approx(expected, rel=1e-3)
+        assert flange["x"] > 5e-3
 
 
 def test_hertz_and_kik_piotrowski_agree_where_curvature_is_even(pair: WheelRailPair) -> None:
@@ -98,7 +103,8 @@ def test_units_may_be_said(pair: WheelRailPair) -> None:
 def test_what_a_table_took_is_logged(pair: WheelRailPair, caplog: pytest.LogCaptureFixture) -> None:
     with caplog.at_level(logging.INFO, logger="klingel"):
         assert pair.prepare().seconds >= 0.0
-    assert "S1002 on 60E1" in caplog.text and "contact table" in caplog.text
+    assert "S1002 on 60E1" in caplog.text
+    assert "contact table" in caplog.text
 
 
 @pytest.mark.parametrize(

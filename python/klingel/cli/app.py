@@ -67,9 +67,9 @@ def run(
     from klingel.scenario import Scenario
 
     read = Scenario.read(scenario)
-    for table in prepare(read):
-        typer.echo(table)
     try:
+        for table in prepare(read):
+            typer.echo(table)
         result = simulate_with_bar(read, scenario.stem)
     except InputError as error:  # what only the vehicle at its speed shows to be wrong, such as too little voltage
         raise error if error.file else error.in_file(str(scenario)) from None

@@ -80,7 +80,7 @@ class WheelRailPair:
     its tape circle, 70 mm outside the flange back; normal: how the normal contact is solved, `kik_piotrowski` (virtual
     penetration, not Hertzian) or `hertz` (an ellipse in every zone of the wheel). Plain numbers are SI, strings carry
     units. Steel: E 210 GPa, nu 0.28.
-    Errors: InputError for a pair that cannot be.
+    Errors: InputError for profiles of the wrong kind and a pair that cannot be.
 
     >>> pair = WheelRailPair(Profile.s1002(), Profile.rail_60e1(), rail_inclination=1 / 40, gauge="1435 mm",
     ...                      flange_back="1360 mm", radius="460 mm")
@@ -99,6 +99,8 @@ class WheelRailPair:
         radius: Quantity,
         normal: NormalContact = "kik_piotrowski",
     ) -> None:
+        wheel.check("wheel")
+        rail.check("rail")
         self.wheel, self.rail = wheel, rail
         self.rail_inclination = to_si(rail_inclination, "1", key="rail_inclination")
         self.gauge = to_si(gauge, "m", key="gauge")
@@ -108,8 +110,8 @@ class WheelRailPair:
         if normal not in get_args(NormalContact):
             raise InputError.single("normal", normal, "is not known", remedy=nearest(normal, get_args(NormalContact)))
         spec = {
-            "wheel": profile_spec(wheel),
-            "rail": profile_spec(rail),
+            "wheel": wheel.spec(),
+            "rail": rail.spec(),
             "rail_inclination": self.rail_inclination,
             "gauge": self.gauge,
             "flange_back": self.flange_back,
@@ -189,13 +191,6 @@ class WheelRailPair:
         """
         amplitudes = _finite("amplitude", amplitude)
         return _shaped(_heard(lambda: self._core.equivalent_conicity(amplitudes.reshape(-1))), amplitudes)
-
-
-def profile_spec(profile: Profile | str) -> dict[str, Any]:
-    """A profile, or the name of a standard one, as the core's spec has it."""
-    if isinstance(profile, str):
-        return {"named": profile.lower()}
-    return {"points": {"y": profile.y.tolist(), "z": profile.z.tolist()}}
 
 
 def _shaped(values: Values, like: Values) -> float | Values:

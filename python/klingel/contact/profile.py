@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,6 +33,8 @@ class Profile:
     name: str
     y: Values
     z: Values
+    standard: str | None = None
+    """Name of the core's own curve that the points are samples of."""
 
     def __post_init__(self) -> None:
         for axis in ("y", "z"):
@@ -44,9 +46,14 @@ class Profile:
             raise InputError(problems, file=self.name)
 
     @classmethod
+    def _standard(cls, name: str, standard: str) -> Self:
+        y, z = core().profile(standard)
+        return cls(name, y, z, standard)
+
+    @classmethod
     def s1002(cls) -> Self:
         """Wheel S1002 (EN 13715; flange 28 mm high, 32.5 mm thick) from its zone formulas, as the core runs it."""
-        return cls("S1002", *core().profile("s1002"))
+        return cls._standard("S1002", "s1002")
 
     @classmethod
     def cone(cls, slope: float) -> Self:
@@ -60,7 +67,7 @@ class Profile:
         """
         if not 0.0 <= slope <= 0.5:
             raise InputError.single("slope", slope, "is outside 0 to 0.5", remedy="give the cone's slope such as 1/20")
-        return cls(f"cone 1:{1 / slope:g}" if slope else "cylinder", *core().profile(f"cone({float(slope)!r})"))
+        return cls._standard(f"cone 1:{1 / slope:g}" if slope else "cylinder", f"cone({float(slope)!r})")
 
     @classmethod
     def rail_60e1(cls) -> Self:
@@ -68,7 +75,7 @@ class Profile:
 
         Status: memory of the standard; the drawing is consistent in itself.
         """
-        return cls("60E1", *core().profile("60e1"))
+        return cls._standard("60E1", "60e1")
 
     @classmethod
     def rail_54e1(cls) -> Self:
@@ -78,12 +85,12 @@ class Profile:
         >>> float(np.interp(0.0141, rail.z[rail.y > 0], rail.y[rail.y > 0]).round(5))
         0.035
         """
-        return cls("54E1", *core().profile("54e1"))
+        return cls._standard("54E1", "54e1")
 
     @classmethod
     def rail_uic60(cls) -> Self:
         """The UIC60 head of common benchmark files, up to 0.041 mm off 60E1; arcs fitted to a public point file."""
-        return cls("UIC60", *core().profile("uic60"))
+        return cls._standard("UIC60", "uic60")
 
     @classmethod
     def read(cls, path: str | Path, *, units: str | None = None) -> Self:
@@ -123,6 +130,16 @@ class Profile:
         except InputError as error:
             raise error.in_file(self.name) from None
         return type(self)(f"{self.name}, smoothed at {length * 1e3:g} mm", y, z)
+
+    def spec(self) -> dict[str, Any]:
+        """The profile as the core's spec has it: by name if it is the core's own, else its points [m].
+
+        >>> Profile.rail_60e1().spec()
+        {'named': '60e1'}
+        """
+        if self.standard is not None:
+            return {"named": self.standard}
+        return {"points": {"y": self.y.tolist(), "z": self.z.tolist()}}
 
     @property
     def kind(self) -> Kind | None:

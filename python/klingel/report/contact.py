@@ -22,7 +22,7 @@ AMPLITUDES = (1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3)
 def contact_report(pair: WheelRailPair, wheel_load: float) -> Report:
     """The page of a pair whose wheels carry `wheel_load` [N] each.
 
-    Errors: InputError if the wheelset cannot be moved by 8 mm on these rails, or for a load that the contact cannot bear.
+    Errors: InputError if the wheelset cannot be moved by 8 mm on these rails, or for a load that is too large.
     """
     with styled():
         drawn = {

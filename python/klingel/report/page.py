@@ -166,7 +166,7 @@ def template(name: str) -> Any:
     environment = Environment(
         loader=DictLoader(files), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    return environment.gettemplate(name)
+    return environment.get_template(name)
 
 
 def _cells(table: pd.DataFrame, columns: Sequence[str]) -> list[dict[str, str]]:

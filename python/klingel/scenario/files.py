@@ -11,6 +11,7 @@ from typing import Any, get_type_hints
 
 from klingel import control, library
 from klingel.contact import CreepOptions, Profile, profile_of
+from klingel.contact.checks import Kind
 from klingel.errors import InputError, Problem, nearest
 from klingel.records import Record, read_toml, validated
 from klingel.scenario.scenario import Scenario, Strategy
@@ -79,9 +80,8 @@ def read(path: str | Path) -> Scenario:
             made["control"] = strategy(tables["control"])
         if "creep_options" in tables:
             made["creep_options"] = _creep_options(tables["creep_options"])
-        for key in ("wheel", "rail"):
-            if key in tables:
-                made[key] = _profile(tables[key], key, path.parent)
+        kinds: tuple[Kind, ...] = ("wheel", "rail")
+        made |= {kind: _profile(tables[kind], kind, path.parent) for kind in kinds if kind in tables}
         return Scenario(**{**tables, **made})
     except InputError as error:
         raise error if error.file else error.in_file(str(path)) from None
@@ -104,12 +104,12 @@ def _creep_options(table: object) -> CreepOptions:
         raise error.within("creep_options") from None
 
 
-def _profile(name: object, key: str, folder: Path) -> Profile:
+def _profile(name: object, kind: Kind, folder: Path) -> Profile:
     """A standard profile by its name, or a measured one by the path of its file, relative to the scenario's."""
     if not isinstance(name, str):
         remedy = "give the name of a standard profile or the path of a file"
-        raise InputError.single(key, name, "is no name or path", remedy=remedy)
-    return profile_of(name, key, folder=folder)
+        raise InputError.single(kind, name, "is no name or path", remedy=remedy)
+    return profile_of(name, kind, folder=folder)
 
 
 def strategy(table: object) -> Strategy:

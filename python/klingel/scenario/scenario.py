@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, Protocol, get_args
 
-from klingel.contact import AS_PUBLISHED, CreepOptions, Profile
+from klingel.contact import AS_PUBLISHED, STANDARD, CreepOptions, Profile
+from klingel.contact.checks import Kind, kind_problems
 from klingel.errors import InputError, Problem, nearest
 from klingel.track import Track
 from klingel.units import Quantity, to_si
@@ -18,9 +19,6 @@ from klingel.vehicle import Vehicle
 
 CreepLaw = Literal["fastsim", "polach", "shen_hedrick_elkins", "linear"]
 Contact = Literal["hertz", "kik_piotrowski"]
-
-RAILS = ("60E1", "UIC60")
-"""Rail profiles known by name."""
 
 ELEMENTS_MIN, ELEMENTS_MAX = 2, 40
 """Coarsest and finest FASTSIM grid: elements along, and across, the ellipse."""
@@ -45,7 +43,8 @@ class Scenario:
     control: strategy of `klingel.control`, None for none; friction: coefficient of all contacts; contact: normal
     contact by `hertz` (an ellipse in every zone of the wheel) or `kik_piotrowski` (not Hertzian), equally fast;
     creep_law with creep_elements (along, across) for FASTSIM and its creep_options; wheel: profile of all wheels, None
-    for the vehicle's; rail: its profile or the name of a standard one; rail_inclination (slope, positive leans inwards), gauge;
+    for the vehicle's; rail: its profile or the name of a standard one; rail_inclination (slope, positive leans
+    inwards), gauge;
     step: of the integrator; record_interval: of the results; duration: None runs to the end of the track.
     Errors: InputError with every problem.
 
@@ -65,7 +64,7 @@ class Scenario:
     creep_elements: tuple[int, int]
     creep_options: CreepOptions
     wheel: Profile | None
-    rail: str | Profile
+    rail: Profile
     rail_inclination: float
     gauge: float
     step: float
@@ -103,7 +102,7 @@ class Scenario:
             "creep_elements": _as_tuple(creep_elements),
             "creep_options": creep_options,
             "wheel": wheel,
-            "rail": rail,
+            "rail": STANDARD["rail"][rail]() if isinstance(rail, str) and rail in STANDARD["rail"] else rail,
             "rail_inclination": to_si(rail_inclination, "1", key="rail_inclination"),
             "gauge": to_si(gauge, "m", key="gauge"),
             "step": to_si(step, "s", key="step"),
@@ -181,11 +180,15 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
 
 
 def _profile_problems(scenario: Scenario) -> Iterator[Problem]:
-    """Profiles are profiles; a rail may be given by its name."""
-    if not (scenario.wheel is None or isinstance(scenario.wheel, Profile)):
-        yield Problem("wheel", scenario.wheel, "is no profile", "give a klingel.contact.Profile")
-    if not isinstance(scenario.rail, Profile) and scenario.rail not in RAILS:
-        yield Problem("rail", scenario.rail, "is not known", nearest(scenario.rail, RAILS))
+    """Profiles are profiles, of a wheel and of a rail."""
+    kinds: tuple[tuple[Kind, object], ...] = (("wheel", scenario.wheel), ("rail", scenario.rail))
+    for kind, given in kinds:
+        if isinstance(given, Profile):
+            yield from kind_problems(kind, given.y, given.z)
+        elif kind == "rail" and isinstance(given, str):
+            yield Problem("rail", given, "is not known", nearest(given, list(STANDARD["rail"])))
+        elif given is not None:
+            yield Problem(kind, given, "is no profile", "give a klingel.contact.Profile")
 
 
 def _step_problems(scenario: Scenario) -> Iterator[Problem]:
