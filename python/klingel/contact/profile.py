@@ -45,6 +45,15 @@ class Profile:
         if problems:
             raise InputError(problems, file=self.name)
 
+    def __eq__(self, other: object) -> bool:
+        """The same points under the same name."""
+        if not isinstance(other, Profile):
+            return NotImplemented
+        return self.name == other.name and np.array_equal(self.y, other.y) and np.array_equal(self.z, other.z)
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.y.tobytes(), self.z.tobytes()))
+
     @classmethod
     def _standard(cls, name: str, standard: str) -> Self:
         y, z = core().profile(standard)

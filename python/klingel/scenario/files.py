@@ -108,7 +108,7 @@ def _profile(name: object, kind: Kind, folder: Path) -> Profile:
     """A standard profile by its name, or a measured one by the path of its file, relative to the scenario's."""
     if not isinstance(name, str):
         remedy = "give the name of a standard profile or the path of a file"
-        raise InputError.single(kind, name, "is no name or path", remedy=remedy)
+        raise InputError.single(kind, name, "is not known", remedy=remedy)
     return profile_of(name, kind, folder=folder)
 
 
