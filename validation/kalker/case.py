@@ -1,0 +1,116 @@
+"""Kalker's creepage coefficients against his table, against CONTACT and against his asymptotes.
+They are read off the linear law, so the whole path from Python to the coefficients is checked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+
+from klingel.contact import creep_force
+from validation.common import Row
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+TITLE = "Kalker's coefficients"
+ABOUT = """
+Reference: table E.3 of Kalker, Three-Dimensional Elastic Bodies in Rolling Contact (1990), as it stands in CONTACT
+(Apache-2.0) and OpenRailVehicleDynamics alike; coefficients that were extrapolated to vanishing creepage from runs of
+CONTACT at nu 0.28; and Kalker's asymptotes for slender ellipses. The table is met exactly; at nu 0.28 it is itself up
+to 1.6 % below CONTACT for slender patches (1/C is quadratic in nu, as CONTACT has it). C33 is not in the table: ours is
+that of CONTACT, at every nu. Beyond the table the asymptotes are joined to it without a corner; above a/b = 10 their own
+error is of the order of 1/ln^2.
+"""
+
+DATA = Path(__file__).parent
+NAMES = ("C11", "C22", "C23", "C33")
+SHEAR_MODULUS = 8.2e10
+
+Values = NDArray[np.float64]
+
+
+def coefficients(ratio: ArrayLike, nu: float) -> dict[str, Values]:
+    """C11, C22, C23 and C33 at a/b, from the linear law with G a b = 1 N: forces and moments are the coefficients."""
+    g = np.asarray(ratio, dtype=np.float64)
+    size = SHEAR_MODULUS**-0.5
+    patch: dict[str, Any] = {"a": size * np.sqrt(g), "b": size / np.sqrt(g), "normal_force": 1.0, "friction": 1.0}
+    patch |= {"shear_modulus": SHEAR_MODULUS, "poisson": nu}
+    along, _, _ = creep_force("linear", xi=-1.0, eta=0.0, phi=0.0, **patch)
+    _, across, _ = creep_force("linear", xi=0.0, eta=-1.0, phi=0.0, **patch)
+    _, spin, moment = creep_force("linear", xi=0.0, eta=0.0, phi=-1.0 / size, **patch)
+    return dict(zip(NAMES, (along, across, spin, moment / size), strict=True))
+
+
+def run() -> Iterator[Row]:
+    """Table, CONTACT, asymptotes."""
+    table = pd.read_csv(DATA / "table_e3.csv", comment="#")
+    ratio = _ratios(table)
+    for nu, column in ((0.0, "nu0"), (0.25, "nu025"), (0.5, "nu05")):
+        ours = coefficients(ratio, nu)
+        error = max(_percent(ours[name], table[f"{name}_{column}"]) for name in NAMES[:3])
+        yield Row.at_most(f"C11, C22, C23 at nu {nu:g}, a/b 0.1 to 10", "table E.3", error, 0.05, "%")
+    contact = pd.read_csv(DATA / "contact.csv", comment="#")
+    for name in NAMES[:3]:
+        for what, part, most in (("0.1 to 1.43", contact[:13], 1.0), ("1.67 to 10", contact[13:], 1.7)):
+            error = _percent(coefficients(part["a_over_b"], 0.28)[name], part[name])
+            yield Row.at_most(f"{name} at nu 0.28, a/b {what}", "CONTACT", error, most, "%")
+    for g, most in ((25.0, 3.0), (1e4, 0.5), (0.05, 4.0), (1e-4, 0.5)):
+        ours = coefficients(g, 0.28)
+        error = max(
+            _percent(ours[name], asymptote) for name, asymptote in zip(NAMES, asymptotes(g, 0.28), strict=False)
+        )
+        yield Row.at_most(f"C11, C22, C23 at nu 0.28, a/b {g:g}", "asymptotes", error, most, "%")
+
+
+def _ratios(table: pd.DataFrame) -> Values:
+    """a/b without the rounding of the table's column."""
+    return np.asarray(np.where(table["which"] == "a/b", table["ratio"], 1.0 / table["ratio"]))
+
+
+def _percent(ours: Any, reference: Any) -> float:
+    return 100 * float(np.max(np.abs(np.asarray(ours) / np.asarray(reference) - 1.0)))
+
+
+def asymptotes(ratio: float, nu: float) -> tuple[float, float, float]:
+    """C11, C22 and C23 of slender ellipses (Kalker 1990; the forms in CONTACT, src/m_hertz.f90)."""
+    if ratio < 1.0:
+        c23 = math.pi * math.sqrt(ratio) / (3 * (1 - nu)) * (1 + nu * (math.log(16 / ratio) - 5))
+        return math.pi**2 / (4 * (1 - nu)), math.pi**2 / 4, c23
+    g, rise = 1 / ratio, 3 - math.log(4)
+    log = math.log(16 / g**2)
+    p, q = log - 2 * nu, (1 - nu) * log + 2 * nu
+    c23 = 2 * math.pi / (3 * g**1.5 * ((1 - nu) * log - 2 + 4 * nu))
+    return 2 * math.pi / (p * g) * (1 + rise / p), 2 * math.pi / g * (1 + (1 - nu) * rise / q) / q, c23
+
+
+def figure() -> Figure:
+    """The coefficients over a/b, with the table, CONTACT and the asymptotes."""
+    from klingel.plot.style import INK, PALE, panels, styled
+
+    table = pd.read_csv(DATA / "table_e3.csv", comment="#")
+    contact = pd.read_csv(DATA / "contact.csv", comment="#")
+    ratio = np.geomspace(0.02, 50, 300)
+    ours = coefficients(ratio, 0.28)
+    slender = np.array([asymptotes(float(g), 0.28) for g in ratio])
+    quarter = coefficients(ratio, 0.25)
+    with styled():
+        drawn, axes = panels(3, height=7.2)
+        for i, (axis, name) in enumerate(zip(axes, NAMES, strict=False)):
+            for side in (ratio < 0.5, ratio > 2.0):
+                axis.loglog(ratio[side], slender[side, i], color=PALE, ls=(0, (1, 1.5)), label="asymptotes, ν 0.28")
+            axis.loglog(ratio, ours[name], color="#D55E00", label="Klingel, ν 0.28")
+            axis.loglog(ratio, quarter[name], color="#0072B2", ls=(0, (5, 1.8)), label="Klingel, ν 0.25")
+            axis.loglog(contact["a_over_b"], contact[name], "o", color=INK, mfc="none", ms=4.5, label="CONTACT, ν 0.28")
+            axis.loglog(_ratios(table), table[f"{name}_nu025"], "x", color=INK, ms=4.5, label="table E.3, ν 0.25")
+            axis.set_ylabel(name)
+        handles, labels = axes[0].get_legend_handles_labels()
+        once = dict(zip(labels, handles, strict=True))
+        axes[0].legend(once.values(), once.keys(), loc="upper left")
+        axes[-1].set_xlabel("a/b")
+    return drawn
