@@ -5,7 +5,7 @@ mod conicity;
 
 pub use super::geometry::RigidContact;
 use super::geometry::{Strips, first_touch};
-use super::level::{level, shifts};
+use super::level::shifts;
 use super::{ContactError, PairGeometry, Profile};
 
 /// Spacing of the wheel points of the rigid view, m.
@@ -138,11 +138,32 @@ impl RigidWheelset {
         let touch = |roll: f64| -> Result<[RigidContact; 2], ContactError> {
             Ok([left.touch(shift(0, roll), -roll)?, right.touch(shift(1, roll), roll)?])
         };
-        let roll = level(self.tape_circle, |roll: f64| {
+        let roll = self.resting_roll(|roll: f64| {
             let [l, r] = touch(roll)?;
-            Ok([l.gap - left.radius * roll.cos(), r.gap - right.radius * roll.cos()])
+            Ok(r.gap - l.gap + (left.radius - right.radius) * roll.cos())
         })?;
         Ok(RigidState { roll, wheels: touch(roll)? })
+    }
+
+    /// The roll at which the two ends of the axle differ in height by `rise` (m, right end lower), which depends on the roll.
+    ///
+    /// Secants; contact on the flange makes the roll feed back on itself by up to -0.8, so the slope is between -1.9 and -0.9.
+    fn resting_roll(&self, rise: impl Fn(f64) -> Result<f64, ContactError>) -> Result<f64, ContactError> {
+        let miss = |roll: f64| -> Result<f64, ContactError> {
+            Ok((0.5 * rise(roll)? / self.tape_circle).clamp(-0.1, 0.1).asin() - roll)
+        };
+        let (mut before, mut missed) = (0.0, miss(0.0)?);
+        let mut roll = 0.6 * missed;
+        for _ in 0..60 {
+            let here = miss(roll)?;
+            if here.abs() < 1e-13 {
+                break;
+            }
+            let slope = ((here - missed) / (roll - before)).clamp(-1.9, -0.9);
+            (before, missed) = (roll, here);
+            roll -= here / slope;
+        }
+        Ok(roll)
     }
 
     /// Rolling radius of the right wheel less that of the left one (m) at a shift `y` of the axle to the right (m).
