@@ -108,7 +108,7 @@ def creep_force(
     """
     options = {"slope": (slope, 3), "reduction": (reduction, 2), "falling": (falling, 2)}
     problems = [
-        *_law_problems(law, elements),
+        *_law_problems(law, elements, blended),
         *(
             Problem(key, value, f"is no tuple of {n} numbers, none negative")
             for key, (value, n) in options.items()
@@ -160,13 +160,15 @@ def creep_force(
     return x, y, z
 
 
-def _law_problems(law: object, elements: object) -> Iterator[Problem]:
+def _law_problems(law: object, elements: object, blended: object) -> Iterator[Problem]:
     if law not in get_args(CreepLaw):
         yield Problem("law", law, "is not known", remedy=nearest(law, get_args(CreepLaw)))
     elif elements is not None and law != "fastsim":
         yield Problem("elements", elements, f"does not belong to {law}", remedy="leave it out or choose fastsim")
     if not _tuple(elements, 2, int, np.integer):
         yield Problem("elements", elements, "is no pair of whole numbers", remedy="give for example (16, 16)")
+    if not isinstance(blended, bool):
+        yield Problem("blended", blended, "is no yes or no", remedy="give True or False")
 
 
 def _speed_problems(falling: object, speed: object) -> Iterator[Problem]:
