@@ -23,7 +23,8 @@ S1002 on the UIC60 variant, 1:40, gauge 1435 mm, r0 460 mm, each wheel loaded by
 in steps of 1 mm; frictionless, and rolling at the friction 0.3 with the yaw 0 and 10 mrad. Reference: the program
 CONTACT (github.com/eve70a/CONTACT, Apache-2.0), wheel-rail module, full half-space theory. Left out: |y| of 4.4 to 5.6
 and 6.3 to 7.1 mm, where the contact jumps and CONTACT merges patches nearer than 4 mm. The contact of Kik and
-Piotrowski and FASTSIM with 16 x 16 elements, creepages from our own geometry. The limits are those that a change of
+Piotrowski and FASTSIM with 16 x 16 elements, creepages from our own geometry; the creep forces carry their share of
+the wheel's load, as in CONTACT (on a flange at 10 mrad that is a sixth of it). The limits are those that a change of
 program may cost an engineer without changing a decision: 0.1 mm of rolling radius is 2e-4 of it.
 """
 

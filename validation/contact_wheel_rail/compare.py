@@ -4,7 +4,7 @@ Left wheels are mirrored into the frame of the right one, in which profiles are 
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -32,25 +32,38 @@ def pair(normal: str = "kik_piotrowski") -> WheelRailPair:
 
 
 def compared(path: Path, of: WheelRailPair) -> pd.DataFrame:
-    """One row for every patch of CONTACT with ours nearest to it on the wheel; columns of both, in SI and radians."""
+    """One row for every patch of CONTACT with ours nearest to it on the wheel; columns of both, in SI and radians.
+
+    In files with creep forces the vertical force of a wheel is that of its normal and its creep force together.
+    """
     rows = pd.read_csv(path, comment="#").to_dict("records")
-    return pd.DataFrame(_patches(rows, of))
+    return pd.DataFrame([_patch(row, _touching(row, of), of) for row in rows])
 
 
-def _patches(rows: Sequence[Mapping[Hashable, Any]], of: WheelRailPair) -> Iterator[dict[str, Any]]:
-    for load, yaw in sorted({(row["Fz_N"], row["yaw_rad"]) for row in rows}):
-        group = [row for row in rows if (row["Fz_N"], row["yaw_rad"]) == (load, yaw)]
-        places = sorted({row["y_ws_mm"] for row in group})
-        ours = of.contact([y * 1e-3 for y in places], yaw=yaw, wheel_load=load)
-        for row in group:
-            yield _patch(row, ours[np.isclose(ours["y"], row["y_ws_mm"] * 1e-3) & (ours["side"] == row["side"])], of)
+def _touching(row: Mapping[Hashable, Any], of: WheelRailPair) -> pd.DataFrame:
+    """Our patches of the row's wheel, with the creep forces in its vertical balance if the row has them."""
+    sign = _sign(row)
+    load = row["Fz_N"]
+    while True:
+        ours = of.contact(row["y_ws_mm"] * 1e-3, yaw=row["yaw_rad"], wheel_load=load)
+        ours = ours[ours["side"] == row["side"]]
+        creep = [_force(of, patch, sign, row["yaw_rad"]) for patch in ours.to_dict("records")]
+        ours = ours.assign(fx=[fx for fx, _ in creep], fy=[fy for _, fy in creep])
+        # Across the rolling direction on the wheel: (0, cos, -sin) of the angle, so that a positive force lifts it.
+        missing = row["Fz_N"] - load - float((ours["fy"] * np.sin(ours["angle"])).sum())
+        if "Fx_N" not in row or abs(missing) < 1e-3 * row["Fz_N"]:
+            return ours
+        load += 0.8 * missing
+
+
+def _sign(row: Mapping[Hashable, Any]) -> float:
+    return 1.0 if row["side"] == "right" else -1.0
 
 
 def _patch(row: Mapping[Hashable, Any], ours: pd.DataFrame, of: WheelRailPair) -> dict[str, Any]:
-    sign = 1.0 if row["side"] == "right" else -1.0
+    sign = _sign(row)
     y_wheel = sign * row["y_wheel_mm"] * 1e-3
     near = ours.iloc[int(np.argmin(np.abs(ours["y_wheel"].to_numpy() - y_wheel)))]
-    fx, fy = _force(of, near, sign, row["yaw_rad"])
     return {
         "y": row["y_ws_mm"] * 1e-3,
         "side": row["side"],
@@ -69,21 +82,21 @@ def _patch(row: Mapping[Hashable, Any], ours: pd.DataFrame, of: WheelRailPair) -
         "area_contact": row["area_mm2"] * 1e-6,
         "pressure": near["pressure"],
         "pressure_contact": row["pmax_MPa"] * 1e6,
-        "fx": fx,
+        "fx": near["fx"],
         "fx_contact": -row.get("Fx_N", math.nan),
-        "fy": fy,
+        "fy": near["fy"],
         "fy_contact": -sign * row.get("Fs_N", math.nan),
     }
 
 
-def _force(of: WheelRailPair, patch: pd.Series, sign: float, yaw: float) -> tuple[float, float]:
+def _force(of: WheelRailPair, patch: Mapping[Hashable, Any], sign: float, yaw: float) -> tuple[float, float]:
     """Creep forces on the wheel that rolls straight at the angular speed V/r0, in the frame of a right wheel.
 
     xi = (V - omega r)/V_ref, eta = -psi/cos(delta) V/V_ref, phi = -omega sin(gamma)/V_ref with V_ref = (V + omega r)/2,
     r of the unstrained wheel and gamma the contact angle against the axle.
     """
     angle = patch["angle"]
-    radius = patch["rolling_radius"] + patch["penetration"] / np.cos(angle)
+    radius = patch["rolling_radius"] + patch["penetration"] / math.cos(angle)
     ratio = radius / of.radius
     mean = 0.5 * (1.0 + ratio)
     fx, fy, _ = creep_force(
@@ -91,14 +104,14 @@ def _force(of: WheelRailPair, patch: pd.Series, sign: float, yaw: float) -> tupl
         a=patch["a"],
         b=patch["b"],
         xi=(1.0 - ratio) / mean,
-        eta=-sign * yaw / np.cos(angle) / mean,
-        phi=-np.sin(angle + sign * patch["roll"]) / of.radius / mean,
+        eta=-sign * yaw / math.cos(angle) / mean,
+        phi=-math.sin(angle + sign * patch["roll"]) / of.radius / mean,
         normal_force=patch["normal_force"],
         friction=FRICTION,
         shear_modulus=SHEAR_MODULUS,
         poisson=POISSON,
     )
-    return float(fx), float(fy)
+    return fx, fy
 
 
 def clear(rows: pd.DataFrame) -> pd.Series:
