@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from klingel.contact import WheelRailPair
+    from klingel.contact import Profile, WheelRailPair
 
 Values = NDArray[np.float64]
 Draw = Callable[["Axes", "Views"], None]
@@ -99,7 +99,7 @@ def _both_sides(pair: WheelRailPair, y: float, yaw: float, wheel_load: float | N
         figure, axes = _grid(1, 2, width=9.0, height=2.65)
         place = f"{abs(y) * 1e3:.3g} mm to the {'right' if y > 0.0 else 'left'}" if y else "centred"
         turned = f", yaw {yaw * 1e3:+.3g} mrad" if yaw else ""
-        title = f"{pair.wheel.name} on {pair.rail.name}, wheelset {place}{turned}, {_how(wheel_load)}"
+        title = f"{_names(pair)}, wheelset {place}{turned}, {_how(wheel_load)}"
         figure.suptitle(title, x=0.01, ha="left", weight="bold", size=10)
         for axis, side in zip(axes, ("left", "right"), strict=True):
             _section(axis, pair, table, side)
@@ -166,7 +166,9 @@ def overview(pair: WheelRailPair, wheel_load: float) -> Figure:
     views = Views(pair, wheel_load)
     with styled():
         figure, axes = _grid(3, 2, width=10.0, height=10.6)
-        figure.suptitle(f"{pair!r}, {views.how}", x=0.01, ha="left", weight="bold", size=11)
+        lean = f"1:{1 / pair.rail_inclination:g}" if pair.rail_inclination else "not inclined"
+        title = f"{_names(pair)} {lean}, gauge {pair.gauge * 1e3:g} mm, {views.how}"
+        figure.suptitle(title, x=0.01, ha="left", weight="bold", size=11)
         axes[0].set_title("Right wheel of the centred wheelset")
         _section(axes[0], pair, pair.contact(0.0, wheel_load=wheel_load), "right")
         axes[0].legend(loc="lower center", bbox_to_anchor=(0.46, 0.02))
@@ -190,8 +192,8 @@ def _section(axis: Axes, pair: WheelRailPair, table: pd.DataFrame, side: str) ->
         seat["z_rail"] + wheel_y * np.sin(roll) + wheel_z * np.cos(roll),
     )
     axis.fill_between(1e3 * mirror * rail_y, -1e3 * rail_z, -40.0, color=BAND, lw=0, zorder=1)
-    axis.plot(1e3 * mirror * rail_y, -1e3 * rail_z, color=PALE, lw=1.6, label=f"rail {pair.rail.name}", zorder=2)
-    axis.plot(1e3 * mirror * wheel_y, -1e3 * wheel_z, color=INK, lw=1.2, label=f"wheel {pair.wheel.name}", zorder=3)
+    axis.plot(1e3 * mirror * rail_y, -1e3 * rail_z, color=PALE, lw=1.6, label=f"rail {_short(pair.rail)}", zorder=2)
+    axis.plot(1e3 * mirror * wheel_y, -1e3 * wheel_z, color=INK, lw=1.2, label=f"wheel {_short(pair.wheel)}", zorder=3)
     for zone, mark in MARKS.items():
         found = patches[patches["zone"] == zone]
         if not len(found):
@@ -355,6 +357,15 @@ def _drawn(views: Views, title: str, draw: Draw) -> Figure:
         axis.set_title(title, pad=8)
         draw(axis, views)
         return figure
+
+
+def _names(pair: WheelRailPair) -> str:
+    return f"{_short(pair.wheel)} on {_short(pair.rail)}"
+
+
+def _short(profile: Profile) -> str:
+    """A profile's name, of a file without its folders."""
+    return profile.name.replace("\\", "/").rsplit("/", 1)[-1]
 
 
 def _how(wheel_load: float | None) -> str:
