@@ -1,7 +1,7 @@
 """creep_force: shapes, signs, limits, options and refusals. Its accuracy is in validation/contact_creep."""
 
 import math
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -9,12 +9,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from klingel.contact import creep_force
+from klingel.contact.creep import CreepLaw
+from klingel.core import core
 from klingel.errors import InputError
 
 STEEL: dict[str, Any] = {"shear_modulus": 8.2e10, "poisson": 0.28}
 PATCH: dict[str, Any] = {"a": 6e-3, "b": 4e-3, "normal_force": 5e4, "friction": 0.3, **STEEL}
 LAWS = ("linear", "shen_hedrick_elkins", "polach", "fastsim")
 LIMIT = 1.5e4
+
+
+def test_python_and_core_know_the_same_laws() -> None:
+    assert core().creep_laws() == list(LAWS) == list(get_args(CreepLaw))
 
 
 @pytest.mark.parametrize("law", LAWS)
