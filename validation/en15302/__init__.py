@@ -1,0 +1,1 @@
+"""Equivalent conicity of EN 15302."""
