@@ -1,0 +1,250 @@
+"""Panels of the figures of a wheel on a rail: each draws one view into given axes.
+Positions in millimetres; the data come from a `WheelRailPair`, computed once for all panels of a figure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from klingel.plot.style import BAND, INK, PALE
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from klingel.contact import Profile, WheelRailPair
+
+Values = NDArray[np.float64]
+Draw = Callable[["Axes", "Views"], None]
+
+REACH = 8e-3
+"""Largest displacement of the wheelset that is drawn [m]."""
+STEPS = 321
+AMPLITUDES = np.arange(0.5e-3, 8.01e-3, 0.1e-3)
+"""Amplitudes of the conicity [m]."""
+LITTLE = 0.02
+"""Share of the load under which a patch is drawn hollow."""
+NOMINAL = 3e-3
+"""Amplitude at which a conicity is usually quoted [m]."""
+
+
+@dataclass(frozen=True)
+class Mark:
+    """How the patches of a zone are drawn: colours for every eye, shapes for grey prints."""
+
+    label: str
+    color: str
+    marker: str
+
+
+MARKS: Mapping[str, Mark] = {
+    "tread": Mark("tread", "#0072B2", "o"),
+    "root": Mark("root", "#E69F00", "^"),
+    "flange": Mark("flange", "#CC3311", "s"),
+    "": Mark("rigid contact", INK, "o"),
+}
+
+
+class Views:
+    """What the figures of one pair share: its patches over the displacement, computed once.
+
+    wheel_load: of each wheel [N], None for rigid contact.
+    """
+
+    def __init__(self, pair: WheelRailPair, wheel_load: float | None) -> None:
+        self.pair, self.wheel_load = pair, wheel_load
+        self.y = np.linspace(-REACH, REACH, STEPS)
+        table = pair.contact(self.y, wheel_load=wheel_load)
+        self.right: pd.DataFrame = table[table["side"] == "right"]
+
+    @property
+    def how(self) -> str:
+        """The load in words."""
+        return how_loaded(self.wheel_load)
+
+
+def section(axis: Axes, pair: WheelRailPair, table: pd.DataFrame, side: str) -> None:
+    """The wheel of one side on its rail, seen from behind: y to the right, up is up."""
+    patches = table[table["side"] == side]
+    mirror = -1.0 if side == "left" else 1.0
+    rail_y, rail_z = leaning(pair)
+    # The patch that bears most fits wheel and rail together; it lies on both.
+    seat = patches.iloc[int(np.argmax(patches["normal_force"].fillna(1.0)))]
+    roll = mirror * float(seat["roll"])
+    wheel_y, wheel_z = pair.wheel.y - seat["y_wheel"], pair.wheel.z - seat["z_wheel"]
+    wheel_y, wheel_z = (
+        seat["y_rail"] + wheel_y * np.cos(roll) - wheel_z * np.sin(roll),
+        seat["z_rail"] + wheel_y * np.sin(roll) + wheel_z * np.cos(roll),
+    )
+    axis.fill_between(1e3 * mirror * rail_y, -1e3 * rail_z, -40.0, color=BAND, lw=0, zorder=1)
+    axis.plot(1e3 * mirror * rail_y, -1e3 * rail_z, color=PALE, lw=1.6, label=f"rail {short(pair.rail)}", zorder=2)
+    axis.plot(1e3 * mirror * wheel_y, -1e3 * wheel_z, color=INK, lw=1.2, label=f"wheel {short(pair.wheel)}", zorder=3)
+    for zone, mark in MARKS.items():
+        found = patches[patches["zone"] == zone]
+        if not len(found):
+            continue
+        y, z = mirror * found["y_rail"].to_numpy(), found["z_rail"].to_numpy()
+        angle = found["angle"].to_numpy()
+        axis.plot(
+            1e3 * y, -1e3 * z, ls="", marker=mark.marker, ms=6, color=mark.color, mec="white", mew=0.6, zorder=5,
+            label=mark.label if not zone else f"contact: {mark.label}",
+        )  # fmt: skip
+        # The normal into the rail is (sin, cos) of the angle, to the field side and down.
+        for y0, z0, turn in zip(y, z, angle, strict=True):
+            across, down = mirror * np.sin(turn), np.cos(turn)
+            ends = [[1e3 * y0 - s * 9.0 * across, -1e3 * z0 + s * 9.0 * down] for s in (-1.0, 1.0)]
+            axis.plot(*np.transpose(ends), color=mark.color, lw=1.0, ls=(0, (3, 1.5)), zorder=4)
+    axis.set_aspect("equal")
+    axis.set_ylim(-32.0, 16.0)
+    axis.set_xlim(*sorted((-mirror * 74.0, mirror * 58.0)))
+    axis.set_xlabel(f"{side} rail: across the track, to the right  [mm]")
+    axis.set_ylabel("above top of rail  [mm]")
+
+
+def leaning(pair: WheelRailPair) -> tuple[Values, Values]:
+    """The right rail as it lies [m], from its highest point, its upper 32 mm."""
+    angle = np.arctan(pair.rail_inclination)
+    y = pair.rail.y * np.cos(angle) + pair.rail.z * np.sin(angle)
+    z = pair.rail.z * np.cos(angle) - pair.rail.y * np.sin(angle)
+    top = int(np.argmin(z))
+    y, z = y - y[top], z - z[top]
+    return y[z < 0.032], z[z < 0.032]
+
+
+def _points(axis: Axes, views: Views) -> None:
+    """Wheel below rail would be unreadable: two lines of places, joined where they touch."""
+    pair, table = views.pair, views.right
+    rail_y, rail_z = leaning(pair)
+    on_top = rail_z < 0.016
+    lift = 14.0
+    tread = (pair.wheel.y > -0.046) & (pair.wheel.y < 0.03)
+    axis.plot(1e3 * pair.wheel.y[tread], lift - 1e3 * pair.wheel.z[tread], color=INK, lw=1.2)
+    axis.plot(1e3 * rail_y[on_top], -1e3 * rail_z[on_top], color=PALE, lw=1.6)
+    for zone, mark in MARKS.items():
+        found = table[(table["zone"] == zone) & _whole_half(table["y"])]
+        if len(found):
+            wheel = np.array([1e3 * found["y_wheel"], lift - 1e3 * found["z_wheel"]])
+            rail = np.array([1e3 * found["y_rail"], -1e3 * found["z_rail"]])
+            axis.plot([wheel[0], rail[0]], [wheel[1], rail[1]], color=mark.color, lw=0.7, alpha=0.8)
+            axis.plot(*rail, ls="", marker=mark.marker, ms=3.5, color=mark.color, label=mark.label)
+            axis.plot(*wheel, ls="", marker=mark.marker, ms=3.5, color=mark.color)
+    axis.annotate("wheel", (26.0, lift + 1.6), size=8.5, color=INK, ha="right")
+    axis.annotate("rail", (17.0, -4.4), size=8.5, color="#555555", ha="right")
+    axis.set_ylim(-17.0, lift + 4.0)
+    axis.set_xlabel("place on wheel (from the tape circle) and rail (from its top)  [mm]")
+    axis.set_ylabel("profile  [mm], wheel lifted")
+    title = f"wheelset every 0.5 mm, {views.how}"
+    axis.legend(loc="lower center", bbox_to_anchor=(0.52, 0.0), title=title, title_fontsize=8.5)
+
+
+def _whole_half(y: pd.Series[float]) -> Values:
+    """Which displacements are whole multiples of half a millimetre."""
+    halves = y.to_numpy() / 0.5e-3
+    return np.asarray(np.abs(halves - np.round(halves)) < 1e-6)
+
+
+def _radius(axis: Axes, views: Views) -> None:
+    pair, y = views.pair, views.y
+    axis.plot(1e3 * y, 1e3 * pair.rolling_radius_difference(y), color=INK, lw=1.2, ls=(0, (4, 1.5)), label="rigid")
+    if views.wheel_load is not None:
+        loaded = pair.rolling_radius_difference(y, wheel_load=views.wheel_load)
+        axis.plot(1e3 * y, 1e3 * np.asarray(loaded), color="#0072B2", label=views.how)
+    axis.axhline(0.0, color=INK, lw=0.6, zorder=1)
+    axis.set_xlabel("displacement of the wheelset to the right  [mm]")
+    axis.set_ylabel("Δr, right less left  [mm]")
+    axis.legend(loc="upper left")
+
+
+def _conicity(axis: Axes, views: Views) -> None:
+    found = np.asarray(views.pair.equivalent_conicity(AMPLITUDES))
+    axis.plot(1e3 * AMPLITUDES, found, color="#0072B2")
+    nominal = float(np.interp(NOMINAL, AMPLITUDES, found))
+    axis.plot([1e3 * NOMINAL], [nominal], "o", color=INK, ms=5)
+    axis.annotate(
+        f"{nominal:.3f} at {1e3 * NOMINAL:g} mm", (1e3 * NOMINAL, nominal), (6, 8), textcoords="offset points", size=8.5
+    )
+    axis.set_ylim(bottom=0.0)
+    axis.set_xlim(0.0, 1e3 * AMPLITUDES[-1])
+    axis.set_xlabel("amplitude of the lateral motion  [mm]")
+    axis.set_ylabel("tan γe  [–]")
+
+
+def _angle(axis: Axes, views: Views) -> None:
+    _by_zone(axis, views, np.degrees(views.right["angle"].to_numpy()))
+    axis.set_ylabel("contact angle  [°]")
+
+
+def _pressure(axis: Axes, views: Views) -> None:
+    _by_zone(axis, views, 1e-6 * views.right["pressure"].to_numpy())
+    axis.set_ylim(bottom=0.0)
+    axis.set_ylabel("largest pressure  [MPa]")
+
+
+def _by_zone(axis: Axes, views: Views, values: Values) -> None:
+    """Every patch of the right wheel by its zone, hollow where it bears little."""
+    table = views.right
+    share = np.ones(len(table))
+    if views.wheel_load is not None:
+        share = table["normal_force"].to_numpy() / views.wheel_load
+    for zone, mark in MARKS.items():
+        of_zone = table["zone"].to_numpy() == zone
+        for bears, face in ((True, mark.color), (False, "none")):
+            rows = of_zone & ((share >= LITTLE) == bears)
+            if rows.any():
+                axis.plot(
+                    1e3 * table["y"].to_numpy()[rows], values[rows], ls="", marker=mark.marker, ms=3, mew=0.6,
+                    color=mark.color, mfc=face, label=mark.label if bears else None,
+                )  # fmt: skip
+    if (share < LITTLE).any():
+        axis.plot(
+            [], [], "o", ms=3, mew=0.6, color=INK, mfc="none", label=f"hollow: under {100 * LITTLE:g} % of the load"
+        )
+    axis.set_xlabel("displacement of the wheelset to the right  [mm]")
+    axis.legend(loc="upper left", title=views.how, title_fontsize=8.5)
+
+
+def names(pair: WheelRailPair) -> str:
+    return f"{short(pair.wheel)} on {short(pair.rail)}"
+
+
+def short(profile: Profile) -> str:
+    """A profile's name, of a file without its folders."""
+    return profile.name.replace("\\", "/").rsplit("/", 1)[-1]
+
+
+def how_loaded(wheel_load: float | None) -> str:
+    """The load in words."""
+    return "rigid contact" if wheel_load is None else f"{wheel_load / 1e3:g} kN a wheel"
+
+
+PANELS: Mapping[str, tuple[str, Draw, str]] = {
+    "points": (
+        "Contact points of the right wheel",
+        _points,
+        "Places where the right wheel touches, joined, for displacements of the wheelset from −8 to 8 mm; {load}.",
+    ),
+    "radius": (
+        "Difference of the rolling radii",
+        _radius,
+        "Right less left rolling radius, roll of the wheelset included; {load}, at the load-weighted middle.",
+    ),
+    "conicity": (
+        "Equivalent conicity (EN 15302)",
+        _conicity,
+        "Slope of the cone whose wheelset swings with the same wavelength; rigid contact.",
+    ),
+    "angle": (
+        "Contact angle of the right wheel",
+        _angle,
+        "Angle of the contact plane in the track, positive on the flange; {load}.",
+    ),
+    "pressure": (
+        "Largest contact pressure of the right wheel",
+        _pressure,
+        "Largest pressure in every patch, elastic steel; {load}.",
+    ),
+}
