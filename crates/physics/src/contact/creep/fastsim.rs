@@ -89,19 +89,18 @@ struct Four<T> {
 }
 
 impl<T: Scalar> Four<T> {
+    /// Steps and bounds of strips that start from their leading edges.
     #[inline(always)]
-    fn new(nx: f64, strips: &FourStrips, slip: &Slip<T>) -> Self {
-        let mut s = Self::default();
+    fn start(&mut self, nx: f64, strips: &FourStrips, slip: &Slip<T>) {
         for l in 0..4 {
             let half = strips.half[l];
             // A whole step to the middle of the first element, as Kalker has it, sums to (1 + 1/nx) of the linear theory.
             let step = half * (2.0 / (nx + 1.0));
-            s.step_x[l] = (slip.xi - slip.phi_y * strips.y[l]) * step;
-            s.step_y[l] = slip.eta * step;
-            s.spin[l] = slip.phi_x * (half * half * (2.0 / nx));
-            s.bound[l] = slip.bound * (half * half);
+            self.step_x[l] = (slip.xi - slip.phi_y * strips.y[l]) * step;
+            self.step_y[l] = slip.eta * step;
+            self.spin[l] = slip.phi_x * (half * half * (2.0 / nx));
+            self.bound[l] = slip.bound * (half * half);
         }
-        s
     }
 
     /// Takes one more element, whose middle is at `x` (in half lengths of the strip); `depth` is 1 - x^2.
@@ -155,7 +154,7 @@ fn advance<T: Scalar, const G: usize>(grid: &Grid, slip: &Slip<T>) -> Sums<T> {
     let mut fours = [Four::default(); G];
     let fours = &mut fours[..grid.fours.len()];
     for (four, strips) in fours.iter_mut().zip(&grid.fours) {
-        *four = Four::new(nx, strips, slip);
+        four.start(nx, strips, slip);
     }
     for &x in &grid.x {
         for four in fours.iter_mut() {

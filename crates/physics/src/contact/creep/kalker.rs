@@ -91,8 +91,9 @@ impl Kalker {
             let (c, slope) = self.curves.value_and_slope(x);
             return (c, slope.map(|s| s / g));
         }
-        let cubics = &self.cubics[place as usize];
-        let (t, scale) = (place.fract(), 1.0 / (interval() * g));
+        let k = place as usize;
+        let cubics = &self.cubics[k];
+        let (t, scale) = (place - k as f64, 1.0 / (interval() * g));
         (
             cubics.map(|[c0, c1, c2, c3]| c0 + t * (c1 + t * (c2 + t * c3))),
             cubics.map(|[_, c1, c2, c3]| (c1 + t * (2.0 * c2 + t * 3.0 * c3)) * scale),
