@@ -1,12 +1,12 @@
 //! Makes the tables of a pair: every zone at every shift, roll and depth, in parallel.
 //! What the rows hold, and how they are read, is said in `table`.
 
-use super::geometry::{RigidContact, Strips, first_touch, highest};
+use super::geometry::{Normal, RigidContact, Strips, first_touch, highest};
 use super::normal::{Guess, Solver};
 use super::spline::{Axis, sharpen};
 use super::table::{DEPTH, ROLL, SHIFT};
 use super::zones::WheelZones;
-use super::{ContactError, ContactTable, Material, NormalContact, PairGeometry};
+use super::{ContactError, ContactTable, Material, NormalContact, PairGeometry, Profile};
 use rayon::prelude::*;
 
 const SHIFT_INTERVALS: usize = 320;
@@ -17,6 +17,9 @@ const FAR: f64 = 0.03;
 /// A zone that is this much farther away than the depth at which another one leaves its table has no loads: it is never
 /// reached; 0.1 mm of shift move it by less than 0.3 mm.
 const REACH: f64 = 8e-4;
+/// Yaw for which the drift of the contact is computed (rad), and the largest one that is not a jump (m).
+const YAW: f64 = 0.01;
+const FARTHEST_DRIFT: f64 = 5e-4;
 
 impl ContactTable {
     /// Builds the tables in parallel.
@@ -37,39 +40,72 @@ impl ContactTable {
                 let touch = [0, 1, 2].map(|z| first_touch(&zones.strips[z], &gaps[z], pair.radius));
                 let deepest = touch.iter().zip(DEPTH).filter_map(|(t, d)| t.map(|t| t.gap + d)).fold(FAR, f64::min);
                 [0, 1, 2].map(|z| {
-                    let column = Column::new(touch[z], roll, depth.len);
+                    let (strips, gaps) = (&zones.strips[z], &gaps[z]);
+                    let mut column = Column::new(touch[z], roll, depth.len);
                     if column.gap > deepest + REACH {
                         return column;
                     }
+                    column.drift =
+                        touch[z].map_or([0.0; 3], |t| drift(&rail, strips, gaps, [shift, roll], pair.radius, &t));
                     let solver = Solver { normal, radius: pair.radius, pair_modulus: material.pair_modulus() };
-                    column.loaded(&zones.strips[z], &gaps[z], &solver, (DEPTH[z], depth))
+                    column.loaded(&rail, strips, gaps, [shift, roll], &solver, (DEPTH[z], depth))
                 })
             })
             .collect();
         if columns.iter().all(|c| c[0].gap >= FAR) {
             return Err(ContactError::NoContact { shift: SHIFT[0], roll: ROLL[0] });
         }
+        let gather = |values: &dyn Fn(&Column) -> Vec<f64>, zone: usize| -> Vec<f64> {
+            columns.iter().flat_map(|c| values(&c[zone])).collect()
+        };
         let mut touch: Vec<f64> = columns
             .iter()
             .flat_map(|c| [0, 1, 2].map(|z| c[z].gap).into_iter().chain([0, 1, 2].map(|z| c[z].tan2)))
             .collect();
+        let mut drift = [0, 1, 2].map(|z| gather(&|c| c.drift.to_vec(), z));
+        let space = [axes[0], axes[1], depth];
+        let mut load = [0, 1, 2].map(|z| gather(&|c| c.rows.iter().flat_map(|r| r[..6].to_vec()).collect(), z));
+        let mut detail = [0, 1, 2].map(|z| gather(&|c| c.rows.iter().flat_map(|r| r[6..].to_vec()).collect(), z));
         // A micrometre of the gap is a percent of the load.
-        for zone in 0..3 {
-            sharpen(&mut touch, 6, zone, &axes);
-        }
-        Ok(Self {
-            plane: axes,
-            touch,
-            radius: pair.radius,
-            space: [axes[0], axes[1], depth],
-            load: [0, 1, 2]
-                .map(|z| columns.iter().flat_map(|c| c[z].rows.iter().flat_map(|r| r[..6].iter().copied())).collect()),
-            detail: [0, 1, 2]
-                .map(|z| columns.iter().flat_map(|c| c[z].rows.iter().flat_map(|r| r[6..].iter().copied())).collect()),
-            rail_top: highest(&rail),
-            borders: zones.borders,
-        })
+        (0..6).for_each(|k| sharpen(&mut touch, 6, k, &axes));
+        drift.par_iter_mut().for_each(|nodes| (0..3).for_each(|k| sharpen(nodes, 3, k, &axes)));
+        load.par_iter_mut().for_each(|nodes| (0..6).for_each(|k| sharpen(nodes, 6, k, &space)));
+        detail.par_iter_mut().for_each(|nodes| (0..2).for_each(|k| sharpen(nodes, 2, k, &space)));
+        let (radius, rail_top, borders) = (pair.radius, highest(&rail), zones.borders);
+        Ok(Self { plane: axes, touch, drift, radius, space, load, detail, rail_top, borders })
     }
+}
+
+/// How far the first contact moves on the wheel by the square of the yaw: angle, place, radius.
+///
+/// A point of the wheel comes r tan^2(delta) psi^2 / 2 nearer to the rail, delta the angle of the rail beside it: the contact
+/// moves to where the rail is steeper.
+fn drift(
+    rail: &Profile,
+    strips: &Strips,
+    gaps: &[f64],
+    place: [f64; 2],
+    radius: f64,
+    level: &RigidContact,
+) -> [f64; 3] {
+    let near = |y: &f64| (y - level.y_wheel).abs() < 2.0 * FARTHEST_DRIFT;
+    let first = strips.y.iter().position(near).unwrap_or(0);
+    let end = strips.y.iter().rposition(near).map_or(first, |e| e + 1);
+    let strips = strips.part(first, end);
+    let normals = PairGeometry::normals(rail, &strips, place[0], place[1]);
+    let nearer = |n: &Normal| 0.5 * radius * (YAW * n.slope).powi(2);
+    let yawed: Vec<f64> = gaps[first..end].iter().zip(&normals).map(|(gap, n)| gap - nearer(n)).collect();
+    // Downhill from the level contact; where it jumps to another place, it does so at a yaw that no slope tells.
+    let mut i = (0..yawed.len()).min_by(|&i, &j| gaps[first + i].total_cmp(&gaps[first + j])).unwrap_or(0);
+    while let Some(next) = [i.wrapping_sub(1), i + 1].into_iter().find(|&j| j < yawed.len() && yawed[j] < yawed[i]) {
+        i = next;
+    }
+    let about = i.saturating_sub(1)..(i + 2).min(yawed.len());
+    let touch = first_touch(&strips.part(about.start, about.end), &yawed[about], radius);
+    let moved = touch.filter(|t| (t.y_wheel - level.y_wheel).abs() < FARTHEST_DRIFT);
+    moved.map_or([0.0; 3], |t| {
+        [t.angle - level.angle, t.y_wheel - level.y_wheel, t.radius - level.radius].map(|x| x / (YAW * YAW))
+    })
 }
 
 /// One zone at one (shift, roll).
@@ -78,6 +114,8 @@ struct Column {
     gap: f64,
     /// Squared tangent of the angle of the contact plane in the track at first touch.
     tan2: f64,
+    /// What the square of the yaw adds to angle (rad), place (m) and radius (m).
+    drift: [f64; 3],
     /// What the table holds, over the depth axis.
     rows: Vec<[f64; 8]>,
 }
@@ -86,21 +124,35 @@ impl Column {
     /// A zone that touches there, if at all, without loads.
     fn new(touch: Option<RigidContact>, roll: f64, len: usize) -> Self {
         let (gap, tan2) = touch.map_or((FAR, 0.0), |t| (t.gap.min(FAR), (t.angle - roll).tan().powi(2)));
-        Self { gap, tan2, rows: vec![[0.0; 8]; len] }
+        Self { gap, tan2, drift: [0.0; 3], rows: vec![[0.0; 8]; len] }
     }
 
-    fn loaded(mut self, strips: &Strips, gaps: &[f64], solver: &Solver, (deepest, axis): (f64, Axis)) -> Self {
+    fn loaded(
+        mut self,
+        rail: &Profile,
+        strips: &Strips,
+        gaps: &[f64],
+        [shift, roll]: [f64; 2],
+        solver: &Solver,
+        (deepest, axis): (f64, Axis),
+    ) -> Self {
         // Only strips that can come into contact at the largest depth.
         let near = |g: &f64| *g < self.gap + deepest * 1.3;
         let first = gaps.iter().position(near).unwrap_or(0);
         let end = gaps.iter().rposition(near).map_or(first, |e| e + 1);
-        let strips = strips.part(first, end);
+        let mut strips = strips.part(first, end);
+        let normals = PairGeometry::normals(rail, &strips, shift, roll);
         let mut guess = Guess::default();
         let mut penetration = Vec::with_capacity(end - first);
         for (i, row) in self.rows.iter_mut().enumerate().rev().take_while(|(i, _)| *i > 1) {
             let d = axis.node(i).powi(2) * deepest;
             penetration.clear();
-            penetration.extend(gaps[first..end].iter().zip(&strips.cos).map(|(g, cos)| (self.gap + d - g) * cos));
+            let w = self.gap + d;
+            penetration.extend(gaps[first..end].iter().zip(&normals).map(|(g, n)| n.penetration(w - g)));
+            // What is farther apart than it can ever come has no strained surface.
+            for (j, n) in normals.iter().enumerate().filter(|(j, _)| penetration[*j] > 0.0) {
+                (strips.sin[j], strips.cos[j]) = n.strained(penetration[j]).sin_cos();
+            }
             if let Some(l) = solver.load(&strips, &penetration, &mut guess) {
                 let (root, detail) = (d.sqrt(), l.detail);
                 let [a, b, pressure] = [l.a, l.b, detail.pressure].map(|x| x / root);

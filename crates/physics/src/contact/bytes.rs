@@ -5,7 +5,7 @@ use super::ContactTable;
 use super::spline::Axis;
 
 /// Changes whenever the layout does.
-const FORMAT: u64 = 2;
+const FORMAT: u64 = 3;
 
 impl ContactTable {
     /// The whole table as bytes.
@@ -36,21 +36,23 @@ impl ContactTable {
         let space = [axis()?, axis()?, axis()?];
         let (radius, borders, rail_top) = (words.float()?, [words.float()?, words.float()?], words.float()?);
         let touch = words.array()?;
+        let drift = [words.array()?, words.array()?, words.array()?];
         let load = [words.array()?, words.array()?, words.array()?];
         let detail = [words.array()?, words.array()?, words.array()?];
-        let table = Self { plane: [space[0], space[1]], touch, radius, space, load, detail, borders, rail_top };
+        let table = Self { plane: [space[0], space[1]], touch, drift, radius, space, load, detail, borders, rail_top };
         // Reading a table relies on these lengths.
         let plane = space[0].len.checked_mul(space[1].len)?;
         let nodes = plane.checked_mul(space[2].len)?;
         let whole = words.0.is_empty()
             && table.touch.len() == plane.checked_mul(6)?
+            && table.drift.iter().all(|d| plane.checked_mul(3) == Some(d.len()))
             && table.load.iter().all(|l| nodes.checked_mul(6) == Some(l.len()))
             && table.detail.iter().all(|d| nodes.checked_mul(2) == Some(d.len()));
         whole.then_some(table)
     }
 
     fn arrays(&self) -> impl Iterator<Item = &Vec<f64>> {
-        core::iter::once(&self.touch).chain(&self.load).chain(&self.detail)
+        core::iter::once(&self.touch).chain(&self.drift).chain(&self.load).chain(&self.detail)
     }
 }
 

@@ -93,6 +93,51 @@ impl PairGeometry {
         };
         strips.y.iter().zip(&strips.z).map(gap).collect()
     }
+
+    /// What makes a vertical gap of the wheel points of `strips` the distance along the wheel's normal: [`Normal`].
+    pub(super) fn normals(rail: &Profile, strips: &Strips, shift: f64, roll: f64) -> Vec<Normal> {
+        let (sin, cos) = roll.sin_cos();
+        let last = rail.y.len() - 2;
+        let normal = |((&y_w, &z_w), &angle): ((&f64, &f64), &f64)| {
+            let y = shift + y_w * cos - z_w * sin;
+            let k = rail.y.partition_point(|&p| p <= y).clamp(1, last + 1) - 1;
+            let bend = (rail.slope[k + 1] - rail.slope[k]) / (rail.y[k + 1] - rail.y[k]);
+            let (sin, cos) = (angle - roll).sin_cos();
+            let slope = rail.within(k, y).1;
+            Normal { share: 1.0 / (cos - slope * sin), sin, slope, bend, roll, angle }
+        };
+        strips.y.iter().zip(&strips.z).zip(&strips.angle).map(normal).collect()
+    }
+}
+
+/// Along the wheel's normal (sin delta, cos delta) a point at the height G above the rail z_r(y) meets it at the distance g,
+/// G + z_r' g sin(delta) + z_r'' g^2 sin^2(delta) / 2 = g cos(delta): solved to second order in G.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Normal {
+    /// 1 / (cos delta - z_r' sin delta).
+    share: f64,
+    sin: f64,
+    /// z_r'.
+    pub slope: f64,
+    /// z_r'', 1/m.
+    bend: f64,
+    roll: f64,
+    /// Angle of the strip on the wheel, rad.
+    angle: f64,
+}
+
+impl Normal {
+    /// Penetration along the normal of the wheel for one along z, m.
+    pub fn penetration(&self, along_z: f64) -> f64 {
+        let first = along_z * self.share;
+        first - 0.5 * self.bend * self.sin * self.sin * self.share * first * first
+    }
+
+    /// Angle of the strained surface on the wheel (rad): the mean of wheel and rail, which are equally stiff.
+    pub fn strained(&self, penetration: f64) -> f64 {
+        let rail = self.roll - (self.slope - self.bend * penetration * self.sin).atan();
+        0.5 * (self.angle + rail)
+    }
 }
 
 /// Place of the highest point of a rail: where its slope changes sign, between the two samples about it.

@@ -10,6 +10,11 @@ pub(super) fn shifts(y: f64, roll: f64, radius: f64, half: f64) -> [f64; 2] {
     [-y - inwards + radius * sin, y - inwards - radius * sin]
 }
 
+/// The same at a `yaw` (rad), which brings the wheels nearer to each other.
+pub(super) fn yawed_shifts(y: f64, roll: f64, yaw: f64, radius: f64, half: f64) -> [f64; 2] {
+    shifts(y, roll, radius, half).map(|shift| shift - half * roll.cos() * (1.0 - yaw.cos()))
+}
+
 /// The roll at which the heights \[left, right\] of the wheels differ as the axle's two ends do.
 pub(super) fn level(half: f64, heights: impl Fn(f64) -> Result<[f64; 2], ContactError>) -> Result<f64, ContactError> {
     let mut roll = 0.0;

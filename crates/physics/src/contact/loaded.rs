@@ -1,7 +1,7 @@
 //! The wheelset under load: roll, patches and rolling radii of both wheels, quasi-static.
 //! For plots, checks and starting values; the simulation reads the tables directly.
 
-use super::level::{level, shifts};
+use super::level::{level, yawed_shifts};
 use super::{ContactError, ContactTable, PairGeometry, Patch};
 
 /// Both wheels of a wheelset under load, left wheel first.
@@ -18,12 +18,17 @@ pub struct LoadedState {
 impl LoadedState {
     /// Load-weighted rolling radius of the right wheel less that of the left one, m.
     ///
-    /// Radii are measured to the rail, that is less the penetration, which is how CONTACT gives them.
+    /// Radii are those of the load-weighted points of the rail, as in [`ContactTable::contact`].
     pub fn rolling_radius_difference(&self) -> f64 {
-        let [left, right] = self.wheels.map(|patches| {
-            let force: f64 = patches.iter().map(|p| p.normal_force).sum();
-            let rail = |p: &Patch<f64>| p.radius - p.penetration;
-            patches.iter().filter(|p| p.active).map(|p| p.normal_force * rail(p)).sum::<f64>() / force
+        let [left, right] = [0, 1].map(|side| {
+            let roll = [-self.roll, self.roll][side];
+            let patches = self.wheels[side].iter().filter(|p| p.active);
+            let (moment, force) = patches.fold((0.0, 0.0), |(moment, force), p| {
+                let normal = p.penetration * p.angle.cos();
+                let radius = p.radius - normal * (p.angle + roll).cos();
+                (moment + p.normal_force * radius, force + p.normal_force)
+            });
+            moment / force
         });
         right - left
     }
@@ -47,10 +52,10 @@ impl ContactTable {
         // A mirrored wheel sees the mirrored yaw; it enters squared.
         let press = |shift: f64, roll: f64| self.pressed_by(wheel_load, shift, roll, yaw);
         let roll = level(half, |roll| {
-            let [left, right] = shifts(y, roll, radius, half);
+            let [left, right] = yawed_shifts(y, roll, yaw, radius, half);
             Ok([press(left, -roll)?.0, press(right, roll)?.0])
         })?;
-        let [left, right] = shifts(y, roll, radius, half);
+        let [left, right] = yawed_shifts(y, roll, yaw, radius, half);
         let ((left, p), (right, q)) = (press(left, -roll)?, press(right, roll)?);
         Ok(LoadedState { roll, wheels: [p, q], heights: [left, right] })
     }
@@ -79,19 +84,26 @@ impl ContactTable {
         let patches = |w: f64| self.patches(shift, w, roll, yaw);
         let carried = |p: &[Patch<f64>; 3]| p.iter().map(|p| p.normal_force * p.angle.cos()).sum::<f64>();
         let apart = patches(-1.0).map_err(|e| refuse(e.what, e.value, [e.least, e.most], "stay on the rail"))?;
-        // Bisection between first touch and the depth of the table.
+        // Bisection from first touch until both ends lie in the table, then the Illinois variant of false position.
         let touch = -1.0 - apart.iter().map(|p| p.penetration).fold(f64::MIN, f64::max);
-        let (mut low, mut high) = (touch, touch + 2e-3);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            match patches(middle) {
-                Ok(p) if carried(&p) < load => low = middle,
-                _ => high = middle,
+        let (mut low, mut high) = ((touch, -1.0), (touch + 2e-3, f64::INFINITY));
+        for _ in 0..100 {
+            let middle = if high.1.is_finite() && low.1 > -1.0 {
+                low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1)
+            } else {
+                0.5 * (low.0 + high.0)
+            };
+            let (miss, found) = patches(middle).map_or((f64::INFINITY, None), |p| (carried(&p) / load - 1.0, Some(p)));
+            if let Some(p) = found.filter(|_| miss.abs() < 1e-11) {
+                return Ok((middle, p));
+            }
+            // The end that stays counts half, or else it would stay for ever.
+            if miss < 0.0 {
+                (low, high.1) = ((middle, miss), 0.5 * high.1);
+            } else {
+                (high, low.1) = ((middle, miss), if low.1 > -1.0 { 0.5 * low.1 } else { low.1 });
             }
         }
-        match patches(low) {
-            Ok(p) if (carried(&p) / load - 1.0).abs() < 1e-6 => Ok((low, p)),
-            _ => Err(refuse("wheel load", load, [0.0, 1e6], "the contact table is not deep enough for it here")),
-        }
+        Err(refuse("wheel load", load, [0.0, 1e6], "the contact table is not deep enough for it here"))
     }
 }

@@ -185,9 +185,9 @@ impl Area {
 
     fn load(&self, strips: &Strips, squares: &[f64]) -> Option<Load> {
         let (mut load, mut x2, mut side, mut down, mut y, mut z) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-        let (mut place, mut place2, mut area, mut pressure) = (0.0, 0.0, 0.0, 0.0_f64);
+        let (mut area, mut pressure) = (0.0, 0.0_f64);
         for (j, &square) in squares.iter().enumerate().filter(|(_, s)| **s > 0.0) {
-            let (x, s) = (self.place[j], (j as f64 + 0.5) * self.width);
+            let x = self.place[j];
             let force = FRAC_PI_2 * self.stiffness[j] * square * self.width;
             load += force;
             x2 += force * square;
@@ -195,22 +195,21 @@ impl Area {
             down += force * between(&strips.cos, x);
             y += force * between(&strips.y, x);
             z += force * between(&strips.z, x);
-            place += force * s;
-            place2 += force * s * s;
             area += 2.0 * square.sqrt() * self.width;
             pressure = pressure.max(self.stiffness[j] * square.sqrt());
         }
         if load <= 0.0 {
             return None;
         }
-        let variance = place2 / load - (place / load).powi(2) + self.width * self.width / 12.0;
+        let a = (1.25 * x2 / load).sqrt();
         Some(Load {
             force: side.hypot(down),
             angle: side.atan2(down),
             y: y / load,
             z: z / load,
-            a: (1.25 * x2 / load).sqrt(),
-            b: (5.0 * variance).sqrt(),
+            a,
+            // The ellipse has the area of the patch: two humps are not as stiff as all that lies between them.
+            b: area / (PI * a),
             detail: PatchDetail { area, pressure },
         })
     }

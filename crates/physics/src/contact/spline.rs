@@ -41,17 +41,23 @@ impl Axis {
 
 /// The coefficients whose spline follows the node values of column `k` to third order: a parabola exactly.
 ///
-/// Each axis in turn takes off an eighth of the second difference, which is what the spline smooths away.
-pub(super) fn sharpen(nodes: &mut [f64], columns: usize, k: usize, axes: &[Axis; 2]) {
-    let (stride, lines) = ([axes[1].len * columns, columns], [axes[0].len, axes[1].len]);
-    for axis in 0..2 {
-        for line in 0..lines[1 - axis] {
-            let at = |i: usize| line * stride[1 - axis] + i * stride[axis] + k;
-            let values: Vec<f64> = (0..lines[axis]).map(|i| nodes[at(i)]).collect();
-            for (i, v) in values.windows(3).enumerate() {
-                nodes[at(i + 1)] -= 0.125 * (v[0] - 2.0 * v[1] + v[2]);
+/// Each axis in turn takes off an eighth of the second difference, which is what the spline smooths away. At a jump or a
+/// kink, where neighbouring second differences have other signs or less than half the size, it would overshoot: there
+/// no more than twice the smallest of them is taken.
+pub(super) fn sharpen(nodes: &mut [f64], columns: usize, k: usize, axes: &[Axis]) {
+    let mut stride = columns;
+    for axis in axes.iter().rev() {
+        for start in (k..nodes.len()).step_by(columns).filter(|start| (start / stride).is_multiple_of(axis.len)) {
+            let at = |i: usize| start + i * stride;
+            let values: Vec<f64> = (0..axis.len).map(|i| nodes[at(i)]).collect();
+            let bends: Vec<f64> = values.windows(3).map(|v| v[0] - 2.0 * v[1] + v[2]).collect();
+            for (i, &bend) in bends.iter().enumerate() {
+                let sides = [bends[i.max(1) - 1], bends[(i + 1).min(bends.len() - 1)]];
+                let most = sides.iter().map(|side| 2.0 * (side * bend.signum()).max(0.0)).fold(f64::INFINITY, f64::min);
+                nodes[at(i + 1)] -= 0.125 * bend.clamp(-most, most);
             }
         }
+        stride *= axis.len;
     }
 }
 

@@ -50,6 +50,8 @@ pub struct ContactTable {
     pub(super) plane: [Axis; 2],
     /// Of each zone at first touch: height w (m), then the squared tangent of the contact plane's angle in the track.
     pub(super) touch: Vec<f64>,
+    /// Of each zone: what the square of the yaw adds to angle, place and radius.
+    pub(super) drift: [Vec<f64>; 3],
     /// Nominal radius of the wheel, m.
     pub(super) radius: f64,
     pub(super) space: [Axis; 3],
@@ -73,7 +75,8 @@ impl ContactTable {
     /// -Y, -roll and -yaw, and mirror what comes out.
     ///
     /// `yaw` of the axle (rad, positive nose outwards on the right wheel): the wheel x'^2/(2 r) below its lowest line and
-    /// turned by psi touches where x' = r tan(delta) psi, and there it is r tan^2(delta) psi^2 / 2 nearer to the rail.
+    /// turned by psi touches where x' = r tan(delta) psi, and there it is r tan^2(delta) psi^2 / 2 nearer to the rail. As
+    /// this is more where the rail is steeper, the contact moves there by the square of the yaw.
     ///
     /// # Errors
     /// A place outside the table; nothing is extrapolated.
@@ -86,7 +89,8 @@ impl ContactTable {
             |x| plane::<6>(&self.touch, &self.plane, x),
             |x| plane_slopes(&self.touch, &self.plane, x),
         );
-        let nearer = yaw.square() * (0.5 * self.radius);
+        let yaw2 = yaw.square();
+        let nearer = yaw2 * (0.5 * self.radius);
         let mut patches = [Patch::default(); 3];
         for zone in 0..3 {
             let d = w - touch[zone] + nearer * touch[zone + 3];
@@ -98,12 +102,18 @@ impl ContactTable {
             let d = d.positive();
             let root = d.sqrt();
             let [n, angle, y, r, a, b] = self.read(zone, [shift, roll, root / DEPTH[zone].sqrt()]);
+            let drift = &self.drift[zone];
+            let [more_angle, aside, higher] = S::lift_n_lazy(
+                [shift, roll],
+                |x| plane::<3>(drift, &self.plane, x),
+                |x| plane_slopes(drift, &self.plane, x),
+            );
             patches[zone] = Patch {
                 active: true,
                 normal_force: n * d * root,
-                angle: angle - roll,
-                y_wheel: y,
-                radius: r,
+                angle: angle - roll + more_angle * yaw2,
+                y_wheel: y + aside * yaw2,
+                radius: r + higher * yaw2,
                 a: a * root,
                 b: b * root,
                 ..patches[zone]

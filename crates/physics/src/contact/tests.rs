@@ -14,6 +14,10 @@ static UIC60: LazyLock<ContactTable> = LazyLock::new(|| {
     ContactTable::build(&pair(Profile::rail_uic60()), &Material::STEEL, NormalContact::Hertz).unwrap()
 });
 
+static KIK_PIOTROWSKI: LazyLock<ContactTable> = LazyLock::new(|| {
+    ContactTable::build(&pair(Profile::rail_uic60()), &Material::STEEL, NormalContact::KikPiotrowski).unwrap()
+});
+
 /// Shift of the right wheel for the wheelset's position and roll.
 fn shift(y: f64, roll: f64) -> f64 {
     y - 0.46 * roll.sin() - 0.75 * (1.0 - roll.cos())
@@ -34,18 +38,38 @@ const CONTACT_1KN: [[f64; 6]; 11] = [
     [7.0, -0.0063858893, -41.053486, 478.48802, 2091.3147, 2.48],
     [8.0, -0.0086498747, -42.334929, 480.51538, 1730.6167, 2.06],
 ];
+/// At 50 kN outside |y| of 4.4-5.6 and 6.3-7.1 mm, where CONTACT merges patches: y of the wheelset, CONTACT's places on
+/// wheel and rail (mm), rolling radius (mm), normal force (N), area (mm2), largest pressure (MPa).
 #[rustfmt::skip]
-const CONTACT_50KN: [[f64; 6]; 10] = [
-    [-8.0, 0.0084796456, 20.131797, 459.61457, 50001.486, 63.8],
-    [-4.0, 0.00025431887, 11.549665, 459.71193, 50002.302, 85.36],
-    [-1.0, 5.0377602e-05, 5.6006623, 459.8006, 50009.556, 111.08],
-    [0.0, 0.0, 0.47862782, 459.94067, 50029.261, 130.92],
-    [1.0, -5.0377602e-05, -6.6140021, 460.2508, 50089.705, 112.84],
-    [3.0, -0.00017610699, -13.107824, 460.70806, 50216.274, 63.0],
-    [4.0, -0.00025431887, -15.537908, 460.95403, 50302.898, 67.52],
-    [6.0, -0.00062819409, -31.348679, 464.38116, 55141.607, 43.2],
-    [7.0, -0.0060386386, -40.940684, 478.01363, 106575.14, 33.76],
-    [9.0, -0.010048731, -43.3538, 481.64413, 77812.976, 25.64],
+const CONTACT_50KN: [[f64; 7]; 17] = [
+    [-10.0, 22.372643, -3.3809942, 459.57134, 50003.153, 60.24, 1265.1931],
+    [-9.0, 21.370303, -2.8194426, 459.59242, 50002.244, 61.92, 1233.7294],
+    [-8.0, 20.131797, -2.3257707, 459.61457, 50001.486, 63.8, 1192.6105],
+    [-6.0, 14.152266, -2.6692142, 459.68557, 50001.49, 77.72, 986.15365],
+    [-4.0, 11.549665, -3.0998305, 459.71193, 50002.302, 85.36, 899.99961],
+    [-3.0, 10.030518, -3.5830133, 459.72955, 50003.575, 90.24, 851.78579],
+    [-2.0, 8.1729002, -4.4090385, 459.75509, 50005.415, 97.24, 795.16904],
+    [-1.0, 5.6006623, -5.9550601, 459.8006, 50009.556, 111.08, 720.73903],
+    [0.0, 0.47862782, -10.05393, 459.94067, 50029.261, 130.92, 733.87827],
+    [1.0, -6.6140021, -16.123374, 460.2508, 50089.705, 112.84, 1096.0174],
+    [2.0, -10.680046, -19.163151, 460.50291, 50155.075, 72.24, 1246.0331],
+    [3.0, -13.107824, -20.559259, 460.70806, 50216.274, 63.0, 1229.229],
+    [4.0, -15.537908, -21.95326, 460.95403, 50302.898, 67.52, 1145.5233],
+    [6.0, -31.348679, -35.589657, 464.38116, 55141.607, 43.2, 2059.4782],
+    [8.0, -42.275248, -40.7611, 480.23216, 87034.353, 27.88, 4877.8792],
+    [9.0, -43.3538, -40.082204, 481.64413, 77812.976, 25.64, 4805.6751],
+    [10.0, -44.325186, -39.469739, 482.72089, 71948.815, 24.2, 4756.1508],
+];
+/// The same at 1 kN.
+#[rustfmt::skip]
+const LIGHT: [[f64; 7]; 7] = [
+    [-8.0, 20.316586, -2.2208963, 459.67799, 1000.0256, 4.67, 324.48358],
+    [-4.0, 11.864791, -2.7869269, 459.76767, 1000.0402, 6.27, 243.91885],
+    [-1.0, 6.4880448, -5.0689827, 459.83606, 1000.1433, 7.77, 196.5244],
+    [1.0, -9.3574488, -18.865505, 460.47052, 1002.5299, 4.27, 358.04028],
+    [3.0, -13.110179, -20.558368, 460.77577, 1004.2635, 4.65, 334.00982],
+    [6.0, -31.249688, -35.480831, 464.42431, 1097.3221, 3.13, 531.69435],
+    [8.0, -42.334929, -40.737614, 480.51538, 1730.6167, 2.06, 1351.6784],
 ];
 
 #[test]
@@ -59,23 +83,83 @@ fn rigid_contact_is_where_contact_finds_it_at_1_kn() {
     }
 }
 
+/// Largest errors of places (mm), radius (mm), force, area and pressure (relative) of a table against rows of CONTACT.
+fn errors(table: &ContactTable, rows: &[[f64; 7]], load: f64) -> [f64; 6] {
+    let mut worst = [0.0_f64; 6];
+    for &[y, y_wheel, y_rail, radius, force, area, pressure] in rows {
+        let [_, right] = table.contact(&pair(Profile::rail_uic60()), y * 1e-3, 0.0, load).unwrap().wheels;
+        assert_eq!(right.len(), 1, "y {y}");
+        let p = &right[0];
+        let errors = [
+            p.y_wheel * 1e3 - y_wheel,
+            p.y_rail * 1e3 - y_rail,
+            p.radius * 1e3 - radius,
+            p.normal_force / force - 1.0,
+            p.area * 1e6 / area - 1.0,
+            p.pressure / 1e6 / pressure - 1.0,
+        ];
+        worst.iter_mut().zip(errors).for_each(|(w, e)| *w = w.max(e.abs()));
+    }
+    worst
+}
+
 #[test]
-fn loaded_contact_has_the_place_force_and_size_of_contact_at_50_kn() {
-    for [y, roll, y_wheel, radius, force, area] in CONTACT_50KN {
-        let (_, patches) = UIC60.pressed_by(5e4, shift(y * 1e-3, roll), roll, 0.0).unwrap();
-        let p = patches.iter().find(|p| p.active).unwrap();
-        assert_eq!(patches.iter().filter(|p| p.active).count(), 1, "y {y}");
-        assert!((p.y_wheel * 1e3 - y_wheel).abs() < 0.4, "y {y}: {p:?}");
-        assert!(((p.radius - p.penetration) * 1e3 - radius).abs() < 0.1, "y {y}: {p:?}");
-        assert!((p.normal_force / force - 1.0).abs() < 0.01, "y {y}: {p:?}");
-        // Away from the two-humped contact near the centre the ellipse has the area of CONTACT's patch.
-        assert!((core::f64::consts::PI * p.a * p.b * 1e6 / area - 1.0).abs() < 0.12, "y {y}: {p:?}");
+fn loaded_contact_has_the_place_force_size_and_pressure_of_contact() {
+    let within = |errors: [f64; 6], most: [f64; 6]| {
+        assert!(errors.iter().zip(most).all(|(e, m)| *e < m), "{errors:?} {most:?}");
+    };
+    // The weighted middle of CONTACT is that of the undeformed overlap; two humps at y = 0 make the most of it.
+    within(errors(&KIK_PIOTROWSKI, &CONTACT_50KN, 5e4), [0.3, 0.3, 0.09, 0.01, 0.09, 0.02]);
+    within(errors(&KIK_PIOTROWSKI, &LIGHT, 1e3), [0.03, 0.03, 0.02, 0.002, 0.09, 0.03]);
+    // Hertz: one ellipse for two humps has a third less pressure.
+    within(errors(&UIC60, &CONTACT_50KN, 5e4), [0.4, 0.4, 0.09, 0.01, 0.13, 0.4]);
+    within(errors(&UIC60, &LIGHT, 1e3), [0.03, 0.03, 0.02, 0.002, 0.09, 0.08]);
+}
+
+#[test]
+fn forces_and_their_slopes_are_continuous_along_y() {
+    let geometry = pair(Profile::rail_uic60());
+    for table in [&*UIC60, &*KIK_PIOTROWSKI] {
+        let force = |y: f64| -> f64 {
+            let state = table.wheelset_at(&geometry, y, 0.0, 5e4).unwrap();
+            state.wheels[1].iter().map(|p| p.normal_force * p.angle.sin()).sum()
+        };
+        // Place and size of the largest second difference.
+        let sharpest = |middle: f64, half: i32, step: f64| {
+            let f: Vec<f64> = (-half..=half).map(|i| force(middle + f64::from(i) * step)).collect();
+            let bends = f.windows(3).enumerate().map(|(i, f)| (i, (f[0] - 2.0 * f[1] + f[2]).abs()));
+            let (i, bend) = bends.max_by(|p, q| p.1.total_cmp(&q.1)).unwrap();
+            (middle + f64::from(i as i32 + 1 - half) * step, bend)
+        };
+        // Halving the step quarters the second difference of a smooth curve, halves it at a kink, leaves it at a jump.
+        let (mut place, mut bend) = sharpest(0.0, 400, 2e-5);
+        let (mut step, mut ratio) = (2e-5, 1.0);
+        for _ in 0..6 {
+            step *= 0.5;
+            let finer = sharpest(place, 8, step);
+            ratio = bend / finer.1;
+            (place, bend) = finer;
+        }
+        assert!(ratio > 2.5, "{ratio} at {place}: {bend} N in {step} m");
     }
 }
 
-/// Least distance along z of a yawed wheel, as a body of revolution, to the rail: (gap, place along the rail).
-fn direct(rail: &Profile, wheel: &Profile, shift: f64, roll: f64, yaw: f64, about: f64) -> (f64, f64) {
-    let (r0, mut best) = (0.46, (f64::MAX, 0.0));
+#[test]
+fn bytes_give_the_table_back() {
+    let bytes = UIC60.to_bytes();
+    let back = ContactTable::from_bytes(&bytes).unwrap();
+    assert!(bytes.len() < 40_000_000 && back.to_bytes() == bytes);
+    let place = [3e-3, -2e-4, 1e-4, 5e-3];
+    let read = |t: &ContactTable| format!("{:?}", t.patches(place[0], place[1], place[2], place[3]).unwrap());
+    assert_eq!(read(&back), read(&UIC60));
+    assert!(ContactTable::from_bytes(&bytes[..bytes.len() - 8]).is_none());
+    assert!(ContactTable::from_bytes(&[bytes.as_slice(), &[0; 8]].concat()).is_none());
+    assert!(ContactTable::from_bytes(&bytes[8..]).is_none() && ContactTable::from_bytes(b"").is_none());
+}
+
+/// Least distance along z of a yawed wheel, as a body of revolution, to the rail: (gap, place along the rail, on the wheel).
+fn direct(rail: &Profile, wheel: &Profile, shift: f64, roll: f64, yaw: f64, about: f64) -> (f64, f64, f64) {
+    let (r0, mut best) = (0.46, (f64::MAX, 0.0, 0.0));
     let ((sf, cf), (sy, cy)) = (roll.sin_cos(), yaw.sin_cos());
     for i in -200..=200 {
         let y_w = about + f64::from(i) * 1e-5;
@@ -89,7 +173,7 @@ fn direct(rail: &Profile, wheel: &Profile, shift: f64, roll: f64, yaw: f64, abou
             if let Some((z_rail, _)) = rail.at(y + shift + r0 * sf) {
                 let gap = z_rail - (z - r0 * cf);
                 if gap < best.0 {
-                    best = (gap, x);
+                    best = (gap, x, y_w);
                 }
             }
         }
@@ -101,17 +185,28 @@ fn direct(rail: &Profile, wheel: &Profile, shift: f64, roll: f64, yaw: f64, abou
 fn yaw_moves_the_contact_ahead_and_nearer_as_in_three_dimensions() {
     let pair = pair(Profile::rail_60e1());
     let (rail, rigid) = (pair.placed_rail().unwrap(), RigidWheelset::new(&pair).unwrap());
+    let table = ContactTable::build(&pair, &Material::STEEL, NormalContact::Hertz).unwrap();
     for (shift, roll) in [(3e-3, 1e-4), (5.8e-3, 5e-4), (8.5e-3, 4e-3)] {
         let touch = rigid.wheel(shift, roll).unwrap();
         let tan = (touch.angle - roll).tan();
-        let level = direct(&rail, &pair.wheel, shift, roll, 0.0, touch.y_wheel).0;
+        let (level, _, y_level) = direct(&rail, &pair.wheel, shift, roll, 0.0, touch.y_wheel);
         for yaw in [6e-3, -1.2e-2] {
-            let (gap, x) = direct(&rail, &pair.wheel, shift, roll, yaw, touch.y_wheel);
+            let (gap, x, y_wheel) = direct(&rail, &pair.wheel, shift, roll, yaw, touch.y_wheel);
             // A positive yaw of the right wheel carries its outer side back: the flange touches ahead for yaw > 0.
             let ahead = touch.radius * tan * yaw;
             assert!((x - ahead).abs() < 0.03 * ahead.abs() + 4e-4, "{shift} {yaw}: {x} {ahead}");
             let nearer = 0.5 * touch.radius * (tan * yaw).powi(2);
             assert!((level - gap - nearer).abs() < 0.05 * nearer + 3e-6, "{shift} {yaw}: {} {nearer}", level - gap);
+            // The tables know where on the wheel, to the spacing of the direct search.
+            let place = |yaw: f64| {
+                let zone = |w: f64| {
+                    let patches = table.patches(shift, w, roll, yaw).unwrap();
+                    patches.into_iter().max_by(|p, q| p.penetration.total_cmp(&q.penetration)).unwrap()
+                };
+                zone(5e-6 - 1.0 - zone(-1.0).penetration).y_wheel
+            };
+            let (moved, drift) = (y_wheel - y_level, place(yaw) - place(0.0));
+            assert!((moved - drift).abs() < 0.1 * moved.abs() + 2e-5, "{shift} {yaw}: {moved} {drift}");
         }
     }
 }
@@ -179,19 +274,24 @@ fn tables_smooth_the_direct_solution_by_little() {
         for zone in (0..3).filter(|&z| patches[z].normal_force > 1e4) {
             let (strips, patch) = (&zones.strips[zone], &patches[zone]);
             let gaps = PairGeometry::gaps(&rail, strips, shift, roll);
-            let penetration: Vec<f64> = gaps.iter().zip(&strips.cos).map(|(g, cos)| (w - g) * cos).collect();
+            let normals = PairGeometry::normals(&rail, strips, shift, roll);
+            let penetration: Vec<f64> = gaps.iter().zip(&normals).map(|(g, n)| n.penetration(w - g)).collect();
+            let mut strips = strips.clone();
+            for (j, n) in normals.iter().enumerate() {
+                (strips.sin[j], strips.cos[j]) = n.strained(penetration[j]).sin_cos();
+            }
             let modulus = Material::STEEL.pair_modulus();
             let solver = normal::Solver { normal: NormalContact::Hertz, radius: 0.46, pair_modulus: modulus };
-            let direct = solver.load(strips, &penetration, &mut normal::Guess::default()).unwrap();
+            let direct = solver.load(&strips, &penetration, &mut normal::Guess::default()).unwrap();
             force += (patch.normal_force / direct.force - 1.0).powi(2);
             place += (patch.y_wheel - direct.y).powi(2);
             count += 1.0;
-            assert!((patch.normal_force / direct.force - 1.0).abs() < 0.13, "{shift} {zone} {patch:?} {direct:?}");
+            assert!((patch.normal_force / direct.force - 1.0).abs() < 0.25, "{shift} {zone} {patch:?} {direct:?}");
             assert!((patch.y_wheel - direct.y).abs() < 4e-4, "{shift} {zone} {patch:?} {direct:?}");
         }
     }
     let (force, place) = ((force / count).sqrt(), (place / count).sqrt());
-    assert!(count > 250.0 && force < 0.02 && place < 1.5e-4, "{count} {force} {place}");
+    assert!(count > 250.0 && force < 0.025 && place < 1e-4, "{count} {force} {place}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The contact of a wheelset as people look at it: every patch with its place on wheel and rail, size, pressure and force.
 //! Loaded from the tables, or of rigid wheels and rails; each wheel in its own frame, + to the field side.
 
-use super::level::shifts;
+use super::level::yawed_shifts;
 use super::zones::Zone;
 use super::{ContactError, ContactTable, LoadedState, PairGeometry, PatchDetail, RigidState};
 
@@ -10,7 +10,8 @@ use super::{ContactError, ContactTable, LoadedState, PairGeometry, PatchDetail, 
 pub struct ContactPoint {
     /// Part of the wheel that touches; none in the rigid view, which has one point a wheel.
     pub zone: Option<Zone>,
-    /// Load-weighted middle of the patch on the wheel's profile: from the tape circle to the field side, radius increment, m.
+    /// Load-weighted point of the rail's surface in the wheel's coordinates, as CONTACT has it: from the tape circle to the
+    /// field side, and radius increment, m. The unstrained wheel lies `penetration` deeper along the normal.
     pub y_wheel: f64,
     pub z_wheel: f64,
     /// The same point on the rail: from the highest point of the inclined rail, in track axes, to the field side and down,
@@ -21,7 +22,7 @@ pub struct ContactPoint {
     pub x: f64,
     /// Angle of the contact plane in the track (rad), positive on the flange.
     pub angle: f64,
-    /// Rolling radius measured to the rail, that is less the vertical penetration, m.
+    /// Rolling radius to that point, m; the unstrained wheel's is greater by penetration cos(angle).
     pub radius: f64,
     /// Semi-axes of the equivalent ellipse along and across the rolling direction, m; 0 in the rigid view.
     pub a: f64,
@@ -81,25 +82,17 @@ impl ContactTable {
         state: &LoadedState,
         side: usize,
     ) -> Result<Vec<ContactPoint>, ContactError> {
-        let place = Place::new(pair, self.rail_top, y, state.roll, side);
+        let place = Place::new(pair, self.rail_top, [y, state.roll, yaw], side);
         let touching = Zone::ALL.into_iter().zip(&state.wheels[side]).filter(|(_, p)| p.active);
         touching
             .map(|(zone, p)| {
                 let PatchDetail { area, pressure } = self.detail(zone, place.shift, place.roll, p.penetration)?;
-                let point = place.point(p.y_wheel, p.radius, p.angle, yaw, state.heights[side] - p.penetration);
-                let radius = p.radius - p.penetration;
-                let (normal_force, penetration) = (p.normal_force, p.penetration * p.angle.cos());
-                Ok(ContactPoint {
-                    zone: Some(zone),
-                    radius,
-                    a: p.a,
-                    b: p.b,
-                    area,
-                    pressure,
-                    normal_force,
-                    penetration,
-                    ..point
-                })
+                // The point of the rail lies behind that of the unstrained wheel by the approach along the normal.
+                let (penetration, (sin, cos)) = (p.penetration * p.angle.cos(), (p.angle + place.roll).sin_cos());
+                let (y_wheel, radius) = (p.y_wheel - penetration * sin, p.radius - penetration * cos);
+                let point = place.point(y_wheel, radius, p.angle, yaw, state.heights[side]);
+                let (zone, normal_force) = (Some(zone), p.normal_force);
+                Ok(ContactPoint { zone, a: p.a, b: p.b, area, pressure, normal_force, penetration, ..point })
             })
             .collect()
     }
@@ -110,7 +103,7 @@ impl RigidState {
     /// [`PairGeometry::rail_top`] of the `pair` that the state belongs to.
     pub fn contact(&self, pair: &PairGeometry, rail_top: f64, y: f64, yaw: f64) -> WheelsetContact {
         let point = |side: usize| {
-            let (touch, place) = (&self.wheels[side], Place::new(pair, rail_top, y, self.roll, side));
+            let (touch, place) = (&self.wheels[side], Place::new(pair, rail_top, [y, self.roll, 0.0], side));
             place.point(touch.y_wheel, touch.radius, touch.angle - place.roll, yaw, touch.gap)
         };
         WheelsetContact { roll: self.roll, wheels: [vec![point(0)], vec![point(1)]] }
@@ -128,9 +121,9 @@ struct Place<'a> {
 }
 
 impl<'a> Place<'a> {
-    fn new(pair: &'a PairGeometry, rail_top: f64, y: f64, roll: f64, side: usize) -> Self {
+    fn new(pair: &'a PairGeometry, rail_top: f64, [y, roll, yaw]: [f64; 3], side: usize) -> Self {
         let sign = [-1.0, 1.0][side];
-        let shift = shifts(y, roll, pair.radius, pair.tape_circle())[side];
+        let shift = yawed_shifts(y, roll, yaw, pair.radius, pair.tape_circle())[side];
         Self { pair, rail_top, sign, shift, roll: sign * roll }
     }
 
