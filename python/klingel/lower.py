@@ -78,7 +78,7 @@ def lower(scenario: Scenario) -> Spec:
             "law": scenario.creep_law,
             "elements": list(scenario.creep_elements),
             "contact_dissipation": CONTACT_DISSIPATION,
-            **scenario.creep_options.spec(),
+            **scenario.creep_options.spec(scenario.creep_law),
         },
         "bushings": [*_primary(vehicle, wheels), *_secondary(vehicle)],
         "maxwells": [*_primary_dampers(vehicle, wheels), *_secondary_dampers(vehicle)],

@@ -46,7 +46,7 @@ def _touching(row: Mapping[Hashable, Any], of: WheelRailPair) -> pd.DataFrame:
     load = row["Fz_N"]
     while True:
         ours = of.contact(row["y_ws_mm"] * 1e-3, yaw=row["yaw_rad"], wheel_load=load)
-        ours = ours[ours["side"] == row["side"]]
+        ours = ours.query(f"side == '{row['side']}'")
         creep = [_force(of, patch, sign, row["yaw_rad"]) for patch in ours.to_dict("records")]
         ours = ours.assign(fx=[fx for fx, _ in creep], fy=[fy for _, fy in creep])
         # Across the rolling direction on the wheel: (0, cos, -sin) of the angle, so that a positive force lifts it.

@@ -88,9 +88,12 @@ fn prepare(py: Python<'_>, spec: &str) -> PyResult<Vec<(&'static str, f64, Optio
     Ok(tables.iter().map(pair::note).collect())
 }
 
+/// Name, bytes, whether the check sum is right.
+type Kept = (String, u64, bool);
+
 /// Folder of the compiled contact tables and its tables (name, bytes, whether the check sum is right); none without one.
 #[pyfunction]
-fn cache(py: Python<'_>) -> Option<(String, Vec<(String, u64, bool)>)> {
+fn cache(py: Python<'_>) -> Option<(String, Vec<Kept>)> {
     let folder = klingel_engine::tables::disk::folder()?;
     let tables = py.detach(|| klingel_engine::tables::disk::check(&folder));
     Some((folder.display().to_string(), tables))

@@ -34,7 +34,7 @@ def creep_force(
     shear_modulus: float,
     poisson: float,
     elements: tuple[int, int] | None = None,
-    blended: bool = False,
+    blended: bool | None = None,
     slope: tuple[float, float, float] | None = None,
     reduction: tuple[float, float] | None = None,
     falling: tuple[float, float] | None = None,
@@ -54,7 +54,7 @@ def creep_force(
     shear_modulus: float,
     poisson: float,
     elements: tuple[int, int] | None = None,
-    blended: bool = False,
+    blended: bool | None = None,
     slope: tuple[float, float, float] | None = None,
     reduction: tuple[float, float] | None = None,
     falling: tuple[float, float] | None = None,
@@ -73,7 +73,7 @@ def creep_force(
     shear_modulus: float,
     poisson: float,
     elements: tuple[int, int] | None = None,
-    blended: bool = False,
+    blended: bool | None = None,
     slope: tuple[float, float, float] | None = None,
     reduction: tuple[float, float] | None = None,
     falling: tuple[float, float] | None = None,
@@ -89,8 +89,8 @@ def creep_force(
 
     Options (docs/theory/creep.md has the formulas):
     elements: of `fastsim`, along and across, up to 40 each; (16, 16) unless given
-    blended: of `fastsim`, its three flexibilities blend into one as sliding sets in, which comes nearer to exact
-        theory; off unless asked for, as Kalker's original has three
+    blended: of `fastsim`, its three flexibilities blend into one as sliding sets in, which halves the error at no cost;
+        True unless given, False is Kalker's original
     slope: of `fastsim`, (k0, alpha, beta) of Spiryagin's reduced initial slope
     reduction: of `polach`, (kA, kS), reduced stiffness in adhesion and in slip
     falling: of any law, (A, B [s/m]): friction mu0 ((1 - A) exp(-B w) + A) with mu0 = `friction`, at the slip velocity
@@ -147,7 +147,7 @@ def creep_force(
             poisson=float(poisson),
             elements=ELEMENTS if elements is None else elements,
             reduction=reduction,
-            blended=blended,
+            blended=law == "fastsim" if blended is None else blended,
             slope=slope,
             falling=falling,
         )

@@ -1,4 +1,4 @@
-"""Options of the creep laws in a scenario; off by default, which gives the laws as published for dry, clean bodies.
+"""Options of the creep laws in a scenario; without any, the laws are those of dry and clean bodies.
 The same words as the keywords of `klingel.contact.creep_force`."""
 
 from __future__ import annotations
@@ -17,17 +17,18 @@ LENGTHS = {"slope": 3, "reduction": 2, "falling": 2}
 class CreepOptions:
     """What a creep law is asked for beside its grid; docs/theory/creep.md derives each.
 
-    blended: of `fastsim`: its three flexibilities blend into one as sliding sets in;
+    blended: of `fastsim`: its three flexibilities blend into one as sliding sets in, which halves its error; None is
+    yes for `fastsim`, False is Kalker's original;
     slope: of `fastsim`: (k0, alpha, beta) of Spiryagin's reduced initial slope;
     reduction: of `polach`: (kA, kS), the reduced stiffness in adhesion and in slip;
     falling: of every law: (A, B [s/m]), friction falls with the slip velocity w as mu ((1 - A) exp(-B w) + A).
     Errors: InputError for what is no set of numbers; the core refuses options of another law.
 
-    >>> CreepOptions(falling=(0.4, 0.6)).spec()["falling"]
-    [0.4, 0.6]
+    >>> CreepOptions(falling=(0.4, 0.6)).spec("fastsim")
+    {'blended': True, 'slope': None, 'reduction': None, 'falling': [0.4, 0.6]}
     """
 
-    blended: bool = False
+    blended: bool | None = None
     slope: tuple[float, float, float] | None = None
     reduction: tuple[float, float] | None = None
     falling: tuple[float, float] | None = None
@@ -41,7 +42,7 @@ class CreepOptions:
             raise InputError(problems)
 
     def _problems(self) -> Iterator[Problem]:
-        if not isinstance(self.blended, bool):
+        if not (self.blended is None or isinstance(self.blended, bool)):
             yield Problem("blended", self.blended, "is no yes or no", "give True or False")
         for key, length in LENGTHS.items():
             given = getattr(self, key)
@@ -49,14 +50,15 @@ class CreepOptions:
             if given is not None and not (numbers and len(given) == length):
                 yield Problem(key, given, f"is no set of {length} numbers", f"give {length} numbers or leave it out")
 
-    def spec(self) -> dict[str, Any]:
-        """The options as the core's spec has them."""
-        return {"blended": self.blended} | {key: _plain(getattr(self, key)) for key in LENGTHS}
+    def spec(self, law: str) -> dict[str, Any]:
+        """The options of a law as the core's spec has them."""
+        blended = law == "fastsim" if self.blended is None else self.blended
+        return {"blended": blended} | {key: _plain(getattr(self, key)) for key in LENGTHS}
 
 
 def _plain(numbers: tuple[float, ...] | None) -> list[float] | None:
     return None if numbers is None else list(numbers)
 
 
-AS_PUBLISHED = CreepOptions()
+DRY_AND_CLEAN = CreepOptions()
 """No options."""

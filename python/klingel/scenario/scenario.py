@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, Protocol, get_args
 
-from klingel.contact import AS_PUBLISHED, STANDARD, CreepOptions, Profile
+from klingel.contact import DRY_AND_CLEAN, STANDARD, CreepOptions, Profile
 from klingel.contact.checks import Kind, kind_problems
 from klingel.errors import InputError, Problem, nearest
 from klingel.track import Track
@@ -82,7 +82,7 @@ class Scenario:
         contact: Contact = "hertz",
         creep_law: CreepLaw = "fastsim",
         creep_elements: tuple[int, int] = (10, 10),
-        creep_options: CreepOptions = AS_PUBLISHED,
+        creep_options: CreepOptions = DRY_AND_CLEAN,
         wheel: Profile | None = None,
         rail: str | Profile = "60E1",
         rail_inclination: Quantity = 0.025,
