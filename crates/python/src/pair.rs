@@ -134,10 +134,19 @@ impl ContactPair {
         Ok(py.detach(|| self.differences(y, load)).map_err(|e| refused(&e))?.into_pyarray(py))
     }
 
-    /// Equivalent conicity at every amplitude \[m\].
-    fn equivalent_conicity<'py>(&self, py: Python<'py>, amplitude: Values<'py>) -> PyResult<Column<'py>> {
+    /// Equivalent conicity at every amplitude \[m\], with the wheel and rail of another pair on the left if given.
+    #[pyo3(signature = (amplitude, left=None))]
+    fn equivalent_conicity<'py>(
+        &self,
+        py: Python<'py>,
+        amplitude: Values<'py>,
+        left: Option<&Self>,
+    ) -> PyResult<Column<'py>> {
         let amplitude = amplitude.as_slice()?;
-        let all = || amplitude.par_iter().map(|&a| self.rigid.equivalent_conicity(a)).collect::<Result<Vec<f64>, _>>();
+        let all = || match left {
+            Some(left) => RigidWheelset::of_wheels(&left.geometry, &self.geometry)?.equivalent_conicities(amplitude),
+            None => self.rigid.equivalent_conicities(amplitude),
+        };
         Ok(py.detach(all).map_err(|e| refused(&e))?.into_pyarray(py))
     }
 }

@@ -85,7 +85,7 @@ class WheelRailPair:
     >>> pair = WheelRailPair(Profile.s1002(), Profile.rail_60e1(), rail_inclination=1 / 40, gauge="1435 mm",
     ...                      flange_back="1360 mm", radius="460 mm")
     >>> round(pair.equivalent_conicity(0.003), 3)
-    0.177
+    0.175
     """
 
     def __init__(
@@ -179,18 +179,19 @@ class WheelRailPair:
         return _shaped(made, places)
 
     @overload
-    def equivalent_conicity(self, amplitude: float) -> float: ...
+    def equivalent_conicity(self, amplitude: float, *, left: WheelRailPair | None = None) -> float: ...
     @overload
-    def equivalent_conicity(self, amplitude: ArrayLike) -> float | Values: ...
+    def equivalent_conicity(self, amplitude: ArrayLike, *, left: WheelRailPair | None = None) -> float | Values: ...
 
-    def equivalent_conicity(self, amplitude: ArrayLike) -> float | Values:
+    def equivalent_conicity(self, amplitude: ArrayLike, *, left: WheelRailPair | None = None) -> float | Values:
         """Equivalent conicity at an amplitude of lateral motion [m], by the integration of EN 15302, rigid contact.
 
         Slope of the cone with the same wavelength.
         Errors: InputError for amplitudes that are not positive or over 15 mm.
         """
         amplitudes = _finite("amplitude", amplitude)
-        return _shaped(_heard(lambda: self._core.equivalent_conicity(amplitudes.reshape(-1))), amplitudes)
+        other = None if left is None else left._core
+        return _shaped(_heard(lambda: self._core.equivalent_conicity(amplitudes.reshape(-1), other)), amplitudes)
 
 
 def _shaped(values: Values, like: Values) -> float | Values:

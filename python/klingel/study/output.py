@@ -162,8 +162,8 @@ def _method(scenario: Scenario, asked: int, made: int) -> dict[str, str]:
         "Track": "smooth and rigid",
         "Profiles": f"S1002 on {scenario.rail.name} at 1:{1.0 / scenario.rail_inclination:.0f}, "
         f"gauge {1e3 * scenario.gauge:.0f} mm",
-        "Contact": f"elastic, tabulated over shift and roll; creep forces by {scenario.creep_law.upper()}, "
-        f"{elements} elements, one coefficient of friction, {FRICTION:.2f} in the main runs",
+        "Contact": f"elastic, tabulated over shift and roll; creep forces by {scenario.creep_law.upper()} "
+        f"with blended flexibility, {elements} elements, one coefficient of friction, {FRICTION:.2f} in the main runs",
         "Integration": f"step {1e3 * STEP['passive']:g} ms, in the main runs of solid_like "
         f"{1e3 * STEP['solid_like']:g} ms; controllers sampled at 1 kHz; runs start from the static "
         "equilibrium",
