@@ -31,9 +31,9 @@ fn pressed(shift: f64) -> f64 {
     7e-5 - patches[0].penetration
 }
 
-#[divan::bench(sample_count = 3)]
-fn build() -> ContactTable {
-    ContactTable::build(&pair(), &Material::STEEL, NormalContact::Hertz).expect("S1002 on 60E1 is a valid pair")
+#[divan::bench(args = [NormalContact::Hertz, NormalContact::KikPiotrowski], sample_count = 2)]
+fn build(normal: NormalContact) -> ContactTable {
+    ContactTable::build(&pair(), &Material::STEEL, normal).expect("S1002 on 60E1 is a valid pair")
 }
 
 /// Tread alone, and tread with root.

@@ -58,6 +58,8 @@ impl PairGeometry {
             let value = rail.z[0] - height;
             ContactError::OutOfRange { what: "depth of the rail".into(), value, least: GAUGE_DEPTH, most: 0.2, remedy }
         })?;
+        let remedy = "give the rail's head to at least 12 mm beyond its highest point";
+        check("width of the rail on its field side", rail.y[rail.y.len() - 1] - rail.y[top], [0.012, 0.1], remedy)?;
         let t = (GAUGE_DEPTH + height - rail.z[face]) / (rail.z[face - 1] - rail.z[face]);
         let gauge_point = rail.y[face] + t * (rail.y[face - 1] - rail.y[face]);
         let offset = 0.5 * self.gauge - self.tape_circle() - gauge_point;
@@ -182,7 +184,8 @@ impl Strips {
         check("highest point of the wheel's flange: y", wheel.y[tip], [-0.1, -0.02], remedy)?;
         check("height of the wheel's flange", wheel.z[tip], [0.01, 0.06], remedy)?;
         check("height of the wheel's field side", wheel.z[end], [-0.05, 0.01], remedy)?;
-        check("field side of the wheel: y", wheel.y[end], [0.01, 0.15], remedy)?;
+        let remedy = "give the running surface to at least 25 mm beyond the tape circle, where the inner wheel runs";
+        check("field side of the wheel: y", wheel.y[end], [0.025, 0.15], remedy)?;
         Ok(Self::new(wheel, [wheel.y[tip], wheel.y[end]], width))
     }
 

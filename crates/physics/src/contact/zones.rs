@@ -25,6 +25,9 @@ const ROOT_END: [f64; 2] = [30.0, 62.0];
 const LEAST_ROOT: f64 = 3e-3;
 const LEAST_JUMP: f64 = 1e-3;
 
+/// Where a centred wheelset may touch its wheels, m from the tape circle to the field side.
+const CENTRED: [f64; 2] = [-0.027, 0.045];
+
 /// Wheel strips of the three zones.
 pub(super) struct WheelZones {
     pub strips: [Strips; 3],
@@ -37,7 +40,7 @@ impl WheelZones {
     /// root; where it does not jump, at the middle of the angles.
     ///
     /// # Errors
-    /// A wheel without a flange, or with one less steep than 46 degrees.
+    /// A wheel without a flange, or with one less steep than 46 degrees; a gauge that cannot hold the wheelset.
     pub fn new(pair: &PairGeometry, rail: &Profile) -> Result<Self, ContactError> {
         let whole = Strips::of_wheel(&pair.wheel, 5e-5)?;
         let scan: Vec<RigidContact> = (0..=240)
@@ -46,6 +49,15 @@ impl WheelZones {
                 first_touch(&whole, &gaps, pair.radius)
             })
             .collect();
+        // Centred, a wheelset that fits runs on its treads, neither on its flanges nor on its outer edges.
+        let gaps = PairGeometry::gaps(rail, &whole, 0.0, 0.0);
+        let centred = first_touch(&whole, &gaps, pair.radius).map_or(f64::INFINITY, |touch| touch.y_wheel);
+        let [least, most] = CENTRED;
+        if !(centred > least && centred < most) {
+            let remedy = "the gauge cannot hold this wheelset; check gauge, flange-back distance and profiles".into();
+            let what = "contact of the centred wheelset on its wheel (m)".into();
+            return Err(ContactError::OutOfRange { what, value: centred, least, most, remedy });
+        }
         // The widest jump between two angles that lies on the flange side of `limit`, or the place of the middle angle.
         let border = |[least, most]: [f64; 2], limit: f64| {
             let angle = |p: &[RigidContact]| 0.5 * (p[0].angle + p[1].angle).to_degrees();
