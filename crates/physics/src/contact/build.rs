@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 const SHIFT_INTERVALS: usize = 320;
 const ROLL_INTERVALS: usize = 24;
-const DEPTH_INTERVALS: usize = 14;
+const DEPTH_INTERVALS: usize = 12;
 /// A zone that finds no rail below it counts as this far away, m.
 const FAR: f64 = 0.03;
 /// A zone that is this much farther away than the depth at which another one leaves its table has no loads: it is never
@@ -151,7 +151,7 @@ impl Column {
             penetration.extend(gaps[first..end].iter().zip(&normals).map(|(g, n)| n.penetration(w - g)));
             // What is farther apart than it can ever come has no strained surface.
             for (j, n) in normals.iter().enumerate().filter(|(j, _)| penetration[*j] > 0.0) {
-                (strips.sin[j], strips.cos[j]) = n.strained(penetration[j]).sin_cos();
+                [strips.sin[j], strips.cos[j]] = n.strained(penetration[j]);
             }
             if let Some(l) = solver.load(&strips, &penetration, &mut guess) {
                 let (root, detail) = (d.sqrt(), l.detail);

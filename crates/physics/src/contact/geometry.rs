@@ -104,9 +104,9 @@ impl PairGeometry {
             let y = shift + y_w * cos - z_w * sin;
             let k = rail.y.partition_point(|&p| p <= y).clamp(1, last + 1) - 1;
             let bend = (rail.slope[k + 1] - rail.slope[k]) / (rail.y[k + 1] - rail.y[k]);
-            let (sin, cos) = (angle - roll).sin_cos();
             let slope = rail.within(k, y).1;
-            Normal { share: 1.0 / (cos - slope * sin), sin, slope, bend, roll, angle }
+            let (s, c) = (angle - roll).sin_cos();
+            Normal { share: 1.0 / (c - slope * s), sin: s, cos: c, slope, bend, roll: [sin, cos] }
         };
         strips.y.iter().zip(&strips.z).zip(&strips.angle).map(normal).collect()
     }
@@ -118,14 +118,15 @@ impl PairGeometry {
 pub(super) struct Normal {
     /// 1 / (cos delta - z_r' sin delta).
     share: f64,
+    /// Sine and cosine of the strip's angle in the track.
     sin: f64,
+    cos: f64,
     /// z_r'.
     pub slope: f64,
     /// z_r'', 1/m.
     bend: f64,
-    roll: f64,
-    /// Angle of the strip on the wheel, rad.
-    angle: f64,
+    /// Sine and cosine of the roll.
+    roll: [f64; 2],
 }
 
 impl Normal {
@@ -135,10 +136,15 @@ impl Normal {
         first - 0.5 * self.bend * self.sin * self.sin * self.share * first * first
     }
 
-    /// Angle of the strained surface on the wheel (rad): the mean of wheel and rail, which are equally stiff.
-    pub fn strained(&self, penetration: f64) -> f64 {
-        let rail = self.roll - (self.slope - self.bend * penetration * self.sin).atan();
-        0.5 * (self.angle + rail)
+    /// Sine and cosine, on the wheel, of the strained surface's angle: half-way between wheel and rail, which are equally
+    /// stiff.
+    pub fn strained(&self, penetration: f64) -> [f64; 2] {
+        let slope = self.slope - self.bend * penetration * self.sin;
+        let cos = 1.0 / (1.0 + slope * slope).sqrt();
+        let sum = [self.sin - slope * cos, self.cos + cos];
+        let scale = 1.0 / sum[0].hypot(sum[1]);
+        let ([sin, cos], [sin_roll, cos_roll]) = (sum.map(|x| x * scale), self.roll);
+        [sin * cos_roll + cos * sin_roll, cos * cos_roll - sin * sin_roll]
     }
 }
 

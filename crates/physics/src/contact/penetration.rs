@@ -8,7 +8,7 @@ use super::normal::{Load, PatchDetail, Start};
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// Strips across the interpenetration area; the patch takes half to nine tenths of them.
-const STRIPS: usize = 28;
+const STRIPS: usize = 24;
 /// Half-width of the second difference that gives the curvature of a strip, over a b / sqrt(a^2 + b^2).
 const REACH: f64 = 0.35;
 /// Newton's steps at most, and the error of the approach, over the penetration, before the last of them.

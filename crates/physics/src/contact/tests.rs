@@ -109,7 +109,7 @@ fn loaded_contact_has_the_place_force_size_and_pressure_of_contact() {
         assert!(errors.iter().zip(most).all(|(e, m)| *e < m), "{errors:?} {most:?}");
     };
     // The weighted middle of CONTACT is that of the undeformed overlap; two humps at y = 0 make the most of it.
-    within(errors(&KIK_PIOTROWSKI, &CONTACT_50KN, 5e4), [0.3, 0.3, 0.09, 0.01, 0.09, 0.02]);
+    within(errors(&KIK_PIOTROWSKI, &CONTACT_50KN, 5e4), [0.3, 0.3, 0.09, 0.01, 0.09, 0.03]);
     within(errors(&KIK_PIOTROWSKI, &LIGHT, 1e3), [0.03, 0.03, 0.02, 0.002, 0.09, 0.03]);
     // Hertz: one ellipse for two humps has a third less pressure.
     within(errors(&UIC60, &CONTACT_50KN, 5e4), [0.4, 0.4, 0.09, 0.01, 0.13, 0.4]);
@@ -278,7 +278,7 @@ fn tables_smooth_the_direct_solution_by_little() {
             let penetration: Vec<f64> = gaps.iter().zip(&normals).map(|(g, n)| n.penetration(w - g)).collect();
             let mut strips = strips.clone();
             for (j, n) in normals.iter().enumerate() {
-                (strips.sin[j], strips.cos[j]) = n.strained(penetration[j]).sin_cos();
+                [strips.sin[j], strips.cos[j]] = n.strained(penetration[j]);
             }
             let modulus = Material::STEEL.pair_modulus();
             let solver = normal::Solver { normal: NormalContact::Hertz, radius: 0.46, pair_modulus: modulus };
