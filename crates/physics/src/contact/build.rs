@@ -64,13 +64,12 @@ impl ContactTable {
             .collect();
         let mut drift = [0, 1, 2].map(|z| gather(&|c| c.drift.to_vec(), z));
         let space = [axes[0], axes[1], depth];
-        let mut load = [0, 1, 2].map(|z| gather(&|c| c.rows.iter().flat_map(|r| r[..6].to_vec()).collect(), z));
-        let mut detail = [0, 1, 2].map(|z| gather(&|c| c.rows.iter().flat_map(|r| r[6..].to_vec()).collect(), z));
-        // A micrometre of the gap is a percent of the load.
+        let load = [0, 1, 2].map(|z| gather(&|c| c.rows.iter().flat_map(|r| r[..6].to_vec()).collect(), z));
+        let detail = [0, 1, 2].map(|z| gather(&|c| c.rows.iter().flat_map(|r| r[6..].to_vec()).collect(), z));
+        // A micrometre of the gap is a percent of the load. Loads are left smooth: sharpened, they bend so much at jumps that
+        // Newton's method fails there.
         (0..6).for_each(|k| sharpen(&mut touch, 6, k, &axes));
         drift.par_iter_mut().for_each(|nodes| (0..3).for_each(|k| sharpen(nodes, 3, k, &axes)));
-        load.par_iter_mut().for_each(|nodes| (0..6).for_each(|k| sharpen(nodes, 6, k, &space)));
-        detail.par_iter_mut().for_each(|nodes| (0..2).for_each(|k| sharpen(nodes, 2, k, &space)));
         let (radius, rail_top, borders) = (pair.radius, highest(&rail), zones.borders);
         Ok(Self { plane: axes, touch, drift, radius, space, load, detail, rail_top, borders })
     }

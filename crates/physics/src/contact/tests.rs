@@ -132,15 +132,15 @@ fn forces_and_their_slopes_are_continuous_along_y() {
             (middle + f64::from(i as i32 + 1 - half) * step, bend)
         };
         // Halving the step quarters the second difference of a smooth curve, halves it at a kink, leaves it at a jump.
-        let (mut place, mut bend) = sharpest(0.0, 400, 2e-5);
-        let (mut step, mut ratio) = (2e-5, 1.0);
-        for _ in 0..6 {
+        // The mean over many halvings does not depend on where the steps fall.
+        let (mut place, coarse) = sharpest(0.0, 400, 2e-5);
+        let (mut step, mut bend, halvings) = (2e-5, coarse, 7);
+        for _ in 0..halvings {
             step *= 0.5;
-            let finer = sharpest(place, 8, step);
-            ratio = bend / finer.1;
-            (place, bend) = finer;
+            (place, bend) = sharpest(place, 8, step);
         }
-        assert!(ratio > 2.5, "{ratio} at {place}: {bend} N in {step} m");
+        let ratio = (coarse / bend).powf(1.0 / f64::from(halvings));
+        assert!(ratio > 2.3, "{ratio} at {place}: {bend} N in {step} m");
     }
 }
 
