@@ -42,6 +42,8 @@ fn dual_slopes_are_difference_quotients() {
             let h = match state {
                 // the contact stiffens within micrometres
                 "z" | "roll" if matches!(body, "front" | "rear") => 1e-8,
+                // curvatures of the contact tables jump every 50 micrometres
+                "y" if matches!(body, "front" | "rear") => 1e-7,
                 "y" | "z" | "roll" | "pitch" | "yaw" => 1e-6,
                 "force" | "force_rate" => 1e-2,
                 _ => 1e-5,
