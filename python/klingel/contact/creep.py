@@ -167,7 +167,7 @@ def _law_problems(law: object, elements: object, blended: object) -> Iterator[Pr
         yield Problem("elements", elements, f"does not belong to {law}", remedy="leave it out or choose fastsim")
     if not _tuple(elements, 2, int, np.integer):
         yield Problem("elements", elements, "is no pair of whole numbers", remedy="give for example (16, 16)")
-    if not isinstance(blended, bool):
+    if not (blended is None or isinstance(blended, bool)):
         yield Problem("blended", blended, "is no yes or no", remedy="give True or False")
 
 
