@@ -96,7 +96,7 @@ def _force(of: WheelRailPair, patch: Mapping[Hashable, Any], sign: float, yaw: f
     r of the unstrained wheel and gamma the contact angle against the axle.
     """
     angle = patch["angle"]
-    radius = patch["rolling_radius"] + patch["penetration"] / math.cos(angle)
+    radius = patch["rolling_radius"] + patch["penetration"] * math.cos(angle)
     ratio = radius / of.radius
     mean = 0.5 * (1.0 + ratio)
     fx, fy, _ = creep_force(
