@@ -138,9 +138,10 @@ def _wheelset(vehicle: Vehicle, axle: Axle) -> Spec:
 def _pair(scenario: Scenario) -> Spec:
     vehicle = scenario.vehicle
     wheel = scenario.wheel or profile_of(vehicle.wheel_profile.name, "wheel")
+    rail = profile_of(scenario.rail, "rail") if isinstance(scenario.rail, str) else scenario.rail
     return {
         "wheel": wheel.spec(),
-        "rail": scenario.rail.spec(),
+        "rail": rail.spec(),
         "rail_inclination": scenario.rail_inclination,
         "gauge": scenario.gauge,
         "flange_back": vehicle.wheel_profile.flange_back_distance,

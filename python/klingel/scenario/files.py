@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, get_type_hints
 
 from klingel import control, library
-from klingel.contact import CreepOptions, Profile, profile_of
+from klingel.contact import STANDARD, CreepOptions, Profile, profile_of
 from klingel.contact.checks import Kind
 from klingel.errors import InputError, Problem, nearest
 from klingel.records import Record, read_toml, validated
@@ -104,12 +104,12 @@ def _creep_options(table: object) -> CreepOptions:
         raise error.within("creep_options") from None
 
 
-def _profile(name: object, kind: Kind, folder: Path) -> Profile:
+def _profile(name: object, kind: Kind, folder: Path) -> Profile | str:
     """A standard profile by its name, or a measured one by the path of its file, relative to the scenario's."""
     if not isinstance(name, str):
         remedy = "give the name of a standard profile or the path of a file"
         raise InputError.single(kind, name, "is not known", remedy=remedy)
-    return profile_of(name, kind, folder=folder)
+    return name if kind == "rail" and name in STANDARD["rail"] else profile_of(name, kind, folder=folder)
 
 
 def strategy(table: object) -> Strategy:

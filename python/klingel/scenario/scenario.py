@@ -64,7 +64,7 @@ class Scenario:
     creep_elements: tuple[int, int]
     creep_options: CreepOptions
     wheel: Profile | None
-    rail: Profile
+    rail: str | Profile
     rail_inclination: float
     gauge: float
     step: float
@@ -102,7 +102,7 @@ class Scenario:
             "creep_elements": _as_tuple(creep_elements),
             "creep_options": creep_options,
             "wheel": wheel,
-            "rail": STANDARD["rail"][rail]() if isinstance(rail, str) and rail in STANDARD["rail"] else rail,
+            "rail": rail,
             "rail_inclination": to_si(rail_inclination, "1", key="rail_inclination"),
             "gauge": to_si(gauge, "m", key="gauge"),
             "step": to_si(step, "s", key="step"),
@@ -186,7 +186,8 @@ def _profile_problems(scenario: Scenario) -> Iterator[Problem]:
         if isinstance(given, Profile):
             yield from kind_problems(kind, given.y, given.z)
         elif kind == "rail" and isinstance(given, str):
-            yield Problem("rail", given, "is not known", nearest(given, list(STANDARD["rail"])))
+            if given not in STANDARD["rail"]:
+                yield Problem("rail", given, "is not known", nearest(given, list(STANDARD["rail"])))
         elif given is not None:
             yield Problem(kind, given, "is no profile", "give a klingel.contact.Profile")
 
