@@ -40,7 +40,7 @@ pub(super) struct Solved {
 }
 
 impl Solved {
-    /// Edges of the patch: a smaller penetration has no strip beyond them.
+    /// Edges of the patch: of an even gap, a smaller penetration has no strip beyond them.
     fn edges(&self) -> [f64; 2] {
         let first = self.squares.iter().position(|&s| s > 0.0).unwrap_or(0);
         let last = self.squares.iter().rposition(|&s| s > 0.0).unwrap_or(0);
@@ -61,12 +61,17 @@ pub(super) fn solve(
     let area = Area::new(strips, penetration, (radius, pair_modulus), start, limits)?;
     // Squared half-lengths: those of the Hertz contact, or the known ones less what the difference in depth takes off.
     let gain = start.a * start.a / (start.epsilon * start.depth);
+    let hertz = |d: f64| gain * (d - (1.0 - start.epsilon) * start.depth).max(0.0);
     let mut squares: Vec<f64> = if let Some(s) = &before_deeper {
         let less = gain * start.epsilon * (s.depth - start.depth);
-        let known = |&x: &f64| (between(&s.squares, (x - s.first) / s.step) - less).max(0.0);
-        area.place.iter().map(known).collect()
+        let known = |(&x, &d): (&f64, &f64)| {
+            let j = (x - s.first) / s.step;
+            let inside = j >= 0.0 && j <= (s.squares.len() - 1) as f64;
+            if inside { (between(&s.squares, j) - less).max(0.0) } else { hertz(d) }
+        };
+        area.place.iter().zip(&area.depth).map(known).collect()
     } else {
-        area.depth.iter().map(|d| gain * (d - (1.0 - start.epsilon) * start.depth).max(0.0)).collect()
+        area.depth.iter().map(|&d| hertz(d)).collect()
     };
     let mut work = Work::new();
     for _ in 0..STEPS {
@@ -102,7 +107,11 @@ impl Area {
         let cross = |i: usize, o: usize| penetration[i] / (penetration[i] - penetration[o]);
         let low = if first == 0 { -0.5 } else { first as f64 - cross(first, first - 1) };
         let high = if end == last { last as f64 + 0.5 } else { end as f64 + cross(end, end + 1) };
-        let (low, high) = (low.max(limits[0]), high.min(limits[1]));
+        // A patch that is cut or has two humps moves as it grows: whatever Hertz would load stays inside.
+        let would_load = |p: &&f64| **p > (1.0 - start.epsilon) * start.depth;
+        let least = penetration.iter().position(|p| would_load(&p)).map_or(low, |i| i as f64 - 0.5);
+        let most = penetration.iter().rposition(|p| would_load(&p)).map_or(high, |i| i as f64 + 0.5);
+        let (low, high) = (low.max(limits[0].min(least)), high.min(limits[1].max(most)));
         let count = STRIPS.min(((high - low).ceil() as usize).max(8));
         let step = (high - low) / count as f64;
         let place: Vec<f64> = (0..count).map(|j| low + (j as f64 + 0.5) * step).collect();
