@@ -222,9 +222,13 @@ def test_what_cannot_be_oriented_is_refused_with_its_reasons(tmp_path: Path) -> 
         ("a.txt", "1 2\n3 4\n", "SIMPACK .prw and .prr"),
         ("b.prw", "spline.begin\npoint.begin\n1 x\npoint.end\nspline.end\n", "give two numbers"),
         ("c.prw", "spline.begin\npoint.begin\npoint.end\nspline.end\n", "no points are left"),
-        ("d.prw", "header.begin\ntype = 3\nheader.end\nspline.begin\npoint.begin\n1 2\npoint.end", "0 for a rail"),
-        ("e.prw", "spline.begin\nshift.y = a\npoint.begin\n1 2\npoint.end", "shift.y"),
-        ("f.prw", "spline.begin\nunits.len.f = 0\npoint.begin\n1 2\npoint.end", "must be positive"),
+        (
+            "d.prw",
+            "header.begin\ntype = 3\nheader.end\nspline.begin\npoint.begin\n1 2\npoint.end\nspline.end",
+            "0 for a rail",
+        ),
+        ("e.prw", "spline.begin\nshift.y = a\npoint.begin\n1 2\npoint.end\nspline.end", "shift.y"),
+        ("f.prw", "spline.begin\nunits.len.f = 0\npoint.begin\n1 2\npoint.end\nspline.end", "must be positive"),
         ("g.prw", "spline.begin\nheader.end\n", "closes no open block"),
         ("h.whl", "ColumnDef=X,A\n\n1 2\n", "has no X or no Y"),
         ("i.whl", "ColumnDef=X,Y\n", "there are none"),
@@ -233,6 +237,30 @@ def test_what_cannot_be_oriented_is_refused_with_its_reasons(tmp_path: Path) -> 
 )
 def test_broken_files(tmp_path: Path, name: str, text: str, said: str) -> None:
     assert said in refused(tmp_path / name, text)
+
+
+@pytest.mark.parametrize(("lines", "block"), [(1, "spline"), (2, "point"), (40, "point")])
+def test_a_simpack_file_that_lost_its_last_lines(tmp_path: Path, lines: int, block: str) -> None:
+    y, z = coarse(WHEEL)
+    text = "\n".join(simpack(y[::-1], z[::-1], kind=1).splitlines()[:-lines])
+    message = refused(tmp_path / "wheel.prw", text)
+    assert f"{block}.begin: has no {block}.end" in message
+    assert "cut off" in message
+
+
+@pytest.mark.parametrize(("name", "kind"), [("a.prw", "wheel"), ("b.PRR", "rail")])
+@pytest.mark.parametrize(
+    ("content", "what"), [(b"", "is empty"), (b" \n\n", "is empty"), (bytes(range(256)), "holds no spline block")]
+)
+def test_a_simpack_file_without_its_text(tmp_path: Path, name: str, kind: str, content: bytes, what: str) -> None:
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(InputError) as caught:
+        Profile.read(path)
+    message = str(caught.value)
+    assert f"{path.suffix.lower()} file: {what}" in message
+    assert f"give the {kind} as SIMPACK text" in message
+    assert "y_m" not in message
 
 
 def test_nan_and_turns_are_named_together(tmp_path: Path) -> None:

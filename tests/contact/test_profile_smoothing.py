@@ -1,5 +1,7 @@
 """Smoothing of measured profiles: it filters as its formula says, spares the shape, and refuses spikes."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -63,6 +65,48 @@ def test_spikes_are_named_and_not_averaged_in() -> None:
     assert "point 101" in text
     assert "point 301" in text
     assert len(caught.value.problems) == 2
+
+
+DATA = Path(__file__).parents[2] / "validation" / "en15302" / "data"
+
+
+@pytest.mark.parametrize("name", ["wheel_A", "wheel_B", "wheel_H", "wheel_I", "rail_A"])
+@pytest.mark.parametrize("cutoff", ["1 mm", "3 mm", "6 mm"])
+def test_corners_and_ends_are_no_spikes(name: str, cutoff: str) -> None:
+    profile = Profile.read(DATA / f"{name}.csv")
+    smooth = profile.smoothed(cutoff)
+    assert len(smooth.y) == len(profile.y)
+
+
+def test_a_sharp_corner_is_no_spike() -> None:
+    y = np.linspace(-0.03, 0.03, 241)
+    for slope in (-1.0, -0.3, 0.3, 1.0):
+        Profile("corner", y, np.where(y > 0.01, slope * (y - 0.01), 0.0)).smoothed()
+
+
+@pytest.mark.parametrize("height", [-2e-4, -1e-4, 1e-4, 2e-4])
+@pytest.mark.parametrize("place", [500, 955, 960, 962, 963, 965, 970, 990, 995, 996, 999, 1000])
+def test_spikes_beside_a_corner_and_at_the_end_are_named(height: float, place: int) -> None:
+    wheel = Profile.read(DATA / "wheel_A.csv")
+    z = wheel.z.copy()
+    z[place] += height
+    with pytest.raises(InputError, match="is a spike") as caught:
+        Profile("spiky", wheel.y, z).smoothed()
+    assert [problem.key for problem in caught.value.problems] == [f"point {place + 1}"]
+
+
+@pytest.mark.parametrize("points", [2, 3])
+def test_spikes_of_several_points(points: int) -> None:
+    wheel = Profile.read(DATA / "wheel_A.csv")
+    z = wheel.z.copy()
+    z[500 : 500 + points] += 1.5e-4
+    with pytest.raises(InputError, match="is a spike"):
+        Profile("spiky", wheel.y, z).smoothed()
+
+
+@pytest.mark.parametrize("scatter", [2e-6, 5e-6])
+def test_scatter_is_no_spike(scatter: float) -> None:
+    measured(scatter).smoothed()
 
 
 @pytest.mark.parametrize(("cutoff", "said"), [("0.05 mm", "outside"), ("5 cm", "outside"), ("0.3 mm", "two steps")])

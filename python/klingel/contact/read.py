@@ -50,10 +50,13 @@ def _drawn(path: Path, text: str, units: str | None) -> Drawn:
     """What the file draws, in metres, in the order and on the side that it has."""
     scale = None if units is None else to_si(f"1 {units}", "m", key="units")
     suffix = path.suffix.lower()
-    if re.search(r"^\s*(spline|point)\.begin", text, re.MULTILINE):
+    if re.search(read_simpack.BLOCK, text, re.MULTILINE):
         return read_simpack.read(text, scale, suffix)
     if suffix in read_miniprof.KINDS or re.search(r"^(ColumnDef|XYPoints)\s*=", text, re.MULTILINE | re.IGNORECASE):
         return read_miniprof.read(text, scale, suffix)
+    if suffix in read_simpack.KINDS:
+        # Of no format by its content: the message is about what the extension promises.
+        return read_simpack.read(text, scale, suffix)
     return _csv(text, scale)
 
 

@@ -23,11 +23,20 @@ TYPES: Mapping[float, Kind] = {0.0: "rail", 1.0: "wheel"}
 NAMES = {"m": 1.0, "cm": 1e2, "mm": 1e3, "in": 1 / 0.0254, "inch": 1 / 0.0254}
 """Names of lengths and how many of them make a metre."""
 
+BLOCK = r"^\s*(spline|point)\.begin"
+"""What tells the format, at the begin of a line."""
+
 LOG = logging.getLogger("klingel")
 
 
 def read(text: str, scale: float | None, suffix: str) -> Drawn:
     """Points of a SIMPACK file [m]; `scale` in metres per unit if the caller states it. Errors: InputError."""
+    if not re.search(BLOCK, text, re.MULTILINE):
+        what = "is empty" if not text.strip() else "holds no spline block"
+        remedy = (
+            f"give the {KINDS[suffix]} as SIMPACK text: spline.begin, point.begin, rows of y and z, the .end of both"
+        )
+        raise InputError.single(f"{suffix} file", None, what, remedy=remedy)
     fields, rows = _parsed(text)
     points = np.array([number(row, i) for i, row in enumerate(rows, start=1)]).reshape(-1, 2)
     kind = _kind(fields, suffix)
@@ -58,6 +67,9 @@ def _parsed(text: str) -> tuple[dict[str, str], list[list[str]]]:
             fields[f"header.{key}" if "header" in blocks else key] = value.strip("'\"")
         elif line and "point" in blocks:
             rows.append(line.replace(",", " ").split())
+    if blocks:
+        remedy = "the file is cut off: copy it again, whole, up to spline.end"
+        raise InputError.single(f"{blocks[-1]}.begin", None, f"has no {blocks[-1]}.end", remedy=remedy)
     return fields, rows
 
 
