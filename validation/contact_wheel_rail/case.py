@@ -30,12 +30,16 @@ program may cost an engineer without changing a decision: 0.1 mm of rolling radi
 
 DATA = Path(__file__).parent
 
+JUMP = 3e-3
+"""Steps of the contact's place that count as a jump [m]."""
+
 
 def run() -> Iterator[Row]:
     """Geometry and normal contact at both loads, then the forces."""
     geometry = compared(DATA / "wheel_rail_geometry.csv", pair())
     for load in (1e3, 5e4):
         yield from _geometry(geometry[clear(geometry) & (geometry["load"] == load)], f"{load / 1e3:.0f} kN")
+    yield from _jumps(geometry)
     forces = compared(DATA / "wheel_rail_forces.csv", pair())
     forces = forces[clear(forces)]
     error = _force_error(forces)
@@ -57,6 +61,33 @@ def _geometry(rows: pd.DataFrame, load: str) -> Iterator[Row]:
     yield Row.at_most(f"area, {load}", "CONTACT", percent("area"), 10.0, "%")
     yield Row.at_most(f"largest pressure, {load}", "CONTACT", percent("pressure"), 15.0, "%")
     yield Row.shown(f"normal force, {load}", "CONTACT", percent("normal_force"), "%")
+
+
+def _jumps(rows: pd.DataFrame) -> Iterator[Row]:
+    """Where the contact of the right wheel jumps: under load, the place where its mean position is half-way."""
+    y = np.arange(2e-3, 8.0001e-3, 2e-5)
+    rigid = _mean_place(y, None)
+    contact = rows[(rows["side"] == "right") & (rows["load"] == 1e3)].sort_values("y")
+    for i in np.flatnonzero(np.abs(np.diff(rigid)) > JUMP):
+        place, half_way = 0.5 * (y[i] + y[i + 1]), 0.5 * (rigid[i] + rigid[i + 1])
+        at = f"{place * 1e3:.2f} mm"
+        for load in (1e3, 5e4):
+            near = np.abs(y - place) < 5e-4
+            found = y[near][int(np.argmin(np.abs(_mean_place(y[near], load) - half_way)))]
+            quantity = f"jump at {at}, {load / 1e3:.0f} kN: half-way point"
+            yield Row.at_most(quantity, "jump of the rigid profiles", 1e3 * abs(found - place), 0.2, "mm")
+        moved = np.diff(contact["y_wheel_contact"])[int(np.searchsorted(contact["y"], place)) - 1]
+        yield Row.shown(
+            f"CONTACT's step from {np.floor(place * 1e3):.0f} mm on", f"over {1e3 * JUMP:.0f} mm", moved * 1e3, "mm"
+        )
+
+
+def _mean_place(y: NDArray[np.float64], load: float | None) -> NDArray[np.float64]:
+    """Load-weighted place of the right wheel's patches on the wheel [m]."""
+    table = pair().contact(y, wheel_load=load).query("side == 'right'")
+    weight = table["normal_force"].fillna(1.0)
+    sums = (weight * table["y_wheel"]).groupby(table["y"]).sum() / weight.groupby(table["y"]).sum()
+    return sums.to_numpy(dtype=float)
 
 
 def _force_error(rows: pd.DataFrame) -> NDArray[np.float64]:

@@ -1,6 +1,7 @@
 //! What can go wrong in the engine: bad specs (errors) and ends of motion (faults, which are outcomes).
 
 use crate::control::ControlError;
+use klingel_physics::contact::creep::CreepError;
 use klingel_physics::contact::{ContactError, OutsideTable};
 use klingel_physics::elements::StopError;
 use klingel_physics::track::AlignmentError;
@@ -21,6 +22,8 @@ pub enum EngineError {
     Stop { name: String, source: StopError },
     #[error("wheel-rail pair {index}: {source}")]
     Contact { index: usize, source: ContactError },
+    #[error("creep law: {0}")]
+    Creep(#[from] CreepError),
     #[error("controller: {0}")]
     Control(#[from] ControlError),
     #[error(

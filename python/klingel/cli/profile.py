@@ -38,6 +38,11 @@ def draw(
         raise InputError.single("out", str(out), "is no page or picture", remedy=remedy)
     if not out.parent.is_dir():
         raise InputError.single("out", str(out), "has no folder to be written to", remedy="make it, or choose another")
+    wheel_load = to_si(load, "N", key="load")
+    if not wheel_load > 0.0:
+        raise InputError.single(
+            "load", load, "must be positive [N]", remedy="give the force of one wheel such as 50 kN"
+        )
     pair = WheelRailPair(
         profile_of(wheel, "wheel", units=units),
         profile_of(rail, "rail", units=units),
@@ -48,7 +53,6 @@ def draw(
         normal=normal,  # type: ignore[arg-type]  # it refuses other words
     )
     say(f"{pair}: {pair.prepare()}")
-    wheel_load = to_si(load, "N", key="load")
     if out.suffix in PAGES:
         return contact_report(pair, wheel_load).save(out)
     from klingel.plot.contact import overview

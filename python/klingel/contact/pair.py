@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from klingel.contact.checks import Kind
 from klingel.contact.profile import Profile
 from klingel.core import core
 from klingel.errors import InputError, Problem, nearest
@@ -51,6 +52,12 @@ UNITS: Mapping[str, str] = {
 
 LOADED = ("a", "b", "area", "pressure", "normal_force", "penetration")
 """Columns that only a load fills."""
+
+Y_MAX = 0.1
+"""Displacements beyond this are taken for millimetres [m]."""
+
+YAW_MAX = 0.1
+"""Largest yaw for which a contact runs ahead of its axle by r tan(delta) yaw within 1 % [rad]."""
 
 LOG = logging.getLogger("klingel")
 
@@ -99,8 +106,11 @@ class WheelRailPair:
         radius: Quantity,
         normal: NormalContact = "kik_piotrowski",
     ) -> None:
-        wheel.check("wheel")
-        rail.check("rail")
+        profiles: tuple[tuple[Kind, object], ...] = (("wheel", wheel), ("rail", rail))
+        for kind, given in profiles:
+            if not isinstance(given, Profile):
+                raise InputError.single(kind, given, "is no profile", remedy="give a klingel.contact.Profile")
+            given.check(kind)
         self.wheel, self.rail = wheel, rail
         self.rail_inclination = to_si(rail_inclination, "1", key="rail_inclination")
         self.gauge = to_si(gauge, "m", key="gauge")
@@ -121,7 +131,8 @@ class WheelRailPair:
         self._core: ContactPair = _heard(lambda: core().ContactPair(json.dumps(spec, allow_nan=False)))
 
     def __repr__(self) -> str:
-        lean = f"1:{1 / self.rail_inclination:g}" if self.rail_inclination else "upright"
+        slope = self.rail_inclination
+        lean = f"{'-' if slope < 0.0 else ''}1:{1 / abs(slope):g}" if slope else "upright"
         return f"{self.wheel.name} on {self.rail.name} {lean}, gauge {self.gauge * 1e3:g} mm"
 
     def prepare(self) -> Prepared:
@@ -147,8 +158,10 @@ class WheelRailPair:
         """
         import pandas as pd
 
-        places = _finite("y", y).reshape(-1)
-        turn = float(_finite("yaw", yaw))
+        places = _places(y).reshape(-1)
+        turn = _number("yaw", yaw)
+        if abs(turn) > YAW_MAX:
+            raise InputError.single("yaw", turn, f"is over {YAW_MAX} rad", remedy="give the attack angle in radians")
         raw = _heard(lambda: self._core.contact(places, turn, _load(wheel_load)))
         rigid = wheel_load is None
         columns: dict[str, Any] = {
@@ -174,7 +187,7 @@ class WheelRailPair:
         The roll that follows from the contact is included; wheel_load [N]: of each wheel, then the radius is that of
         the load-weighted middle of the patches; None for rigid wheels and rails. Errors as `contact`.
         """
-        places = _finite("y", y)
+        places = _places(y)
         made = _heard(lambda: self._core.rolling_radius_difference(places.reshape(-1), _load(wheel_load)))
         return _shaped(made, places)
 
@@ -190,6 +203,8 @@ class WheelRailPair:
         Errors: InputError for amplitudes that are not positive or over 15 mm.
         """
         amplitudes = _finite("amplitude", amplitude)
+        if not (left is None or isinstance(left, WheelRailPair)):
+            raise InputError.single("left", left, "is no pair", remedy="give a WheelRailPair, or leave it out")
         other = None if left is None else left._core
         return _shaped(_heard(lambda: self._core.equivalent_conicity(amplitudes.reshape(-1), other)), amplitudes)
 
@@ -210,10 +225,27 @@ def _finite(key: str, given: ArrayLike) -> Values:
     return values
 
 
+def _number(key: str, given: object) -> float:
+    values = _finite(key, given)  # type: ignore[arg-type]  # it refuses what is none
+    if values.ndim:
+        raise InputError.single(key, given, "is more than one number", remedy="give one number for all displacements")
+    return float(values)
+
+
+def _places(y: ArrayLike) -> Values:
+    places = _finite("y", y)
+    if places.size and np.max(np.abs(places)) > Y_MAX:
+        worst = float(places.flat[int(np.argmax(np.abs(places)))])
+        raise InputError.single(
+            "y", worst, f"is over {Y_MAX} m, off every rail", remedy="give it in metres such as 0.005"
+        )
+    return places
+
+
 def _load(wheel_load: float | None) -> float | None:
     if wheel_load is None:
         return None
-    load = float(_finite("wheel_load", wheel_load))
+    load = _number("wheel_load", wheel_load)
     if load <= 0.0:
         remedy = "give the force of one wheel in newtons, or None for rigid contact"
         raise InputError.single("wheel_load", load, "must be positive [N]", remedy=remedy)

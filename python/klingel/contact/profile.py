@@ -125,7 +125,7 @@ class Profile:
         A wave of the length L along the arc keeps 1/(1 + (cutoff/L)^4) of its height: half of it at the cut-off. At
         3 mm S1002 itself moves by 3 um where its radius jumps in the root, and by less than 0.2 um on the tread.
         Errors: InputError for a cut-off outside 0.2 to 20 mm or below two steps of the points, and for spikes: points
-        30 um and eight times the scatter off the smooth curve.
+        far off the smooth runs on both sides of them.
 
         >>> wheel = Profile.s1002()
         >>> bool(abs(wheel.smoothed("3 mm").depth(0.01) - wheel.depth(0.01)) < 2e-7)

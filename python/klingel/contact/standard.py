@@ -39,5 +39,5 @@ def profile_of(text: str, kind: Kind, *, units: str | None = None, folder: Path 
         remedy = f"{nearest(text, list(known))}, or give the path of a file"
         raise InputError.single(kind, text, "is no standard profile", remedy=remedy)
     profile = Profile.read(path, units=units)
-    profile.check(kind, key=kind)
+    profile.check(kind)
     return profile

@@ -6,7 +6,7 @@ use crate::error::EngineError;
 use crate::model::Wheel;
 use crate::spec::{CreepSpec, PairSpec, ProfileSpec, Side, Spec};
 use crate::tables::{self, Prepared};
-use klingel_physics::contact::creep::{CreepError, CreepOptions, FallingFriction, PolachReduction, SlopeReduction};
+use klingel_physics::contact::creep::{CreepOptions, FallingFriction, PolachReduction, SlopeReduction};
 use klingel_physics::contact::{ContactError, CreepForce, CreepLaw, Material, PairGeometry, Profile};
 use std::sync::Arc;
 
@@ -61,7 +61,6 @@ pub(super) fn creep_law(
     spec: &CreepSpec,
     material: &Material,
 ) -> Result<(CreepForce, Option<FallingFriction>), EngineError> {
-    let refused = |e: CreepError| value("creep", e, "change the creep law's settings");
     let law = CreepLaw::named(&spec.law, spec.elements)
         .ok_or_else(|| value("creep.law", &spec.law, &format!("choose {}", CreepLaw::NAMES.join(", "))))?;
     let options = CreepOptions {
@@ -70,7 +69,7 @@ pub(super) fn creep_law(
         slope: spec.slope.map(|[initial, limit, decay]| SlopeReduction { initial, limit, decay }),
     };
     let falling = spec.falling.map(|[ratio, decay]| FallingFriction::new(ratio, decay)).transpose();
-    Ok((CreepForce::with_options(law, options, material).map_err(refused)?, falling.map_err(refused)?))
+    Ok((CreepForce::with_options(law, options, material)?, falling?))
 }
 
 /// The profiles of a pair in their place.

@@ -34,6 +34,9 @@ impl LoadedState {
     }
 }
 
+/// Loads of a wheel that the views take, N.
+const LOAD: [f64; 2] = [1.0, 1e6];
+
 impl ContactTable {
     /// Patches of a wheelset at a shift `y` to the right (m) and a `yaw` (rad), each wheel pressed down by `wheel_load` (N).
     ///
@@ -78,8 +81,8 @@ impl ContactTable {
             most,
             remedy: remedy.into(),
         };
-        if !(load > 0.0 && load < 1e6) {
-            return Err(refuse("wheel load", load, [0.0, 1e6], "give it in newtons"));
+        if !(LOAD[0]..=LOAD[1]).contains(&load) {
+            return Err(refuse("wheel load", load, LOAD, "give the force of one wheel in newtons"));
         }
         let patches = |w: f64| self.patches(shift, w, roll, yaw);
         let carried = |p: &[Patch<f64>; 3]| p.iter().map(|p| p.normal_force * p.angle.cos()).sum::<f64>();
@@ -104,6 +107,8 @@ impl ContactTable {
                 (high, low.1) = ((middle, miss), if low.1 > -1.0 { 0.5 * low.1 } else { low.1 });
             }
         }
-        Err(refuse("wheel load", load, [0.0, 1e6], "the contact table is not deep enough for it here"))
+        // What the deepest place of the table carries.
+        let most = patches(low.0).map_or(0.0, |p| carried(&p));
+        Err(refuse("wheel load", load, [LOAD[0], most], "here the contact table carries no more; give a smaller load"))
     }
 }

@@ -136,13 +136,12 @@ impl Solver {
         if self.normal == NormalContact::KikPiotrowski {
             let b = (e.epsilon * depth / across).sqrt();
             let start = Start { depth, epsilon: e.epsilon, a: e.ratio * b, b, cut };
-            return penetration::solve(
-                strips,
-                penetrations,
-                (self.radius, self.pair_modulus),
-                &start,
-                &mut guess.solved,
-            );
+            let bodies = (self.radius, self.pair_modulus);
+            let found = penetration::solve(strips, penetrations, bodies, &start, &mut guess.solved);
+            // Patches of less than five strips, at the very border of a zone, are left to Hertz.
+            if found.is_some() {
+                return found;
+            }
         }
         let mut load = resultant(strips, &penetrations[first..end], first, depth, (e, across), self.pair_modulus);
         let area = core::f64::consts::PI * load.a * load.b;

@@ -43,21 +43,13 @@ impl WheelZones {
     /// A wheel without a flange, or with one less steep than 46 degrees; a gauge that cannot hold the wheelset.
     pub fn new(pair: &PairGeometry, rail: &Profile) -> Result<Self, ContactError> {
         let whole = Strips::of_wheel(&pair.wheel, 5e-5)?;
+        holds(pair, rail, &whole)?;
         let scan: Vec<RigidContact> = (0..=240)
             .filter_map(|i| {
                 let gaps = PairGeometry::gaps(rail, &whole, f64::from(i) * 5e-5, 0.0);
                 first_touch(&whole, &gaps, pair.radius)
             })
             .collect();
-        // Centred, a wheelset that fits runs on its treads, neither on its flanges nor on its outer edges.
-        let gaps = PairGeometry::gaps(rail, &whole, 0.0, 0.0);
-        let centred = first_touch(&whole, &gaps, pair.radius).map_or(f64::INFINITY, |touch| touch.y_wheel);
-        let [least, most] = CENTRED;
-        if !(centred > least && centred < most) {
-            let remedy = "the gauge cannot hold this wheelset; check gauge, flange-back distance and profiles".into();
-            let what = "contact of the centred wheelset on its wheel (m)".into();
-            return Err(ContactError::OutOfRange { what, value: centred, least, most, remedy });
-        }
         // The widest jump between two angles that lies on the flange side of `limit`, or the place of the middle angle.
         let border = |[least, most]: [f64; 2], limit: f64| {
             let angle = |p: &[RigidContact]| 0.5 * (p[0].angle + p[1].angle).to_degrees();
@@ -80,4 +72,18 @@ impl WheelZones {
         let limits = [[root, whole.y[whole.y.len() - 1]], [flange, root], [whole.y[0], flange]];
         Ok(Self { strips: [0, 1, 2].map(|z| Strips::new(&pair.wheel, limits[z], STRIP[z])), borders: [flange, root] })
     }
+}
+
+/// Refuses a gauge that cannot hold the wheelset: centred, one that fits runs on its treads, neither on its flanges nor
+/// on its outer edges.
+pub(super) fn holds(pair: &PairGeometry, rail: &Profile, wheel: &Strips) -> Result<(), ContactError> {
+    let gaps = PairGeometry::gaps(rail, wheel, 0.0, 0.0);
+    let centred = first_touch(wheel, &gaps, pair.radius).map_or(f64::INFINITY, |touch| touch.y_wheel);
+    let [least, most] = CENTRED;
+    if centred > least && centred < most {
+        return Ok(());
+    }
+    let remedy = "the gauge cannot hold this wheelset; check gauge, flange-back distance and profiles".into();
+    let what = "contact of the centred wheelset on its wheel (m)".into();
+    Err(ContactError::OutOfRange { what, value: centred, least, most, remedy })
 }

@@ -6,6 +6,7 @@ mod conicity;
 pub use super::geometry::RigidContact;
 use super::geometry::{Strips, first_touch};
 use super::level::shifts;
+use super::zones::holds;
 use super::{ContactError, PairGeometry, Profile};
 
 /// Spacing of the wheel points of the rigid view, m.
@@ -62,8 +63,9 @@ impl RigidState {
 
 impl Side {
     fn new(pair: &PairGeometry) -> Result<Self, ContactError> {
-        let strips = Strips::of_wheel(&pair.wheel, SPACING)?;
-        Ok(Self { rail: pair.placed_rail()?, strips, radius: pair.radius })
+        let (rail, strips) = (pair.placed_rail()?, Strips::of_wheel(&pair.wheel, SPACING)?);
+        holds(pair, &rail, &strips)?;
+        Ok(Self { rail, strips, radius: pair.radius })
     }
 
     /// The first contact at a `shift` of the tape circle to the field side and a `roll` that lowers that side.
