@@ -48,7 +48,8 @@ impl ContactTable {
                     column.drift =
                         touch[z].map_or([0.0; 3], |t| drift(&rail, strips, gaps, [shift, roll], pair.radius, &t));
                     let solver = Solver { normal, radius: pair.radius, pair_modulus: material.pair_modulus() };
-                    column.loaded(&rail, strips, gaps, [shift, roll], &solver, (DEPTH[z], depth))
+                    let depths = Depths { most: DEPTH[z], reached: deepest + REACH - column.gap, axis: depth };
+                    column.loaded(&rail, strips, gaps, [shift, roll], &solver, &depths)
                 })
             })
             .collect();
@@ -119,6 +120,14 @@ struct Column {
     rows: Vec<[f64; 8]>,
 }
 
+/// Penetrations of a zone.
+struct Depths {
+    /// The largest of its table, and the largest that is reached before another zone leaves its own, m.
+    most: f64,
+    reached: f64,
+    axis: Axis,
+}
+
 impl Column {
     /// A zone that touches there, if at all, without loads.
     fn new(touch: Option<RigidContact>, roll: f64, len: usize) -> Self {
@@ -133,10 +142,11 @@ impl Column {
         gaps: &[f64],
         [shift, roll]: [f64; 2],
         solver: &Solver,
-        (deepest, axis): (f64, Axis),
+        depths: &Depths,
     ) -> Self {
+        let at = |i: usize| depths.axis.node(i).powi(2) * depths.most;
         // Only strips that can come into contact at the largest depth.
-        let near = |g: &f64| *g < self.gap + deepest * 1.3;
+        let near = |g: &f64| *g < self.gap + depths.most * 1.3;
         let first = gaps.iter().position(near).unwrap_or(0);
         let end = gaps.iter().rposition(near).map_or(first, |e| e + 1);
         let mut strips = strips.part(first, end);
@@ -144,7 +154,11 @@ impl Column {
         let mut guess = Guess::default();
         let mut penetration = Vec::with_capacity(end - first);
         for (i, row) in self.rows.iter_mut().enumerate().rev().take_while(|(i, _)| *i > 1) {
-            let d = axis.node(i).powi(2) * deepest;
+            // If the next smaller depth is reached, this row still shapes the curve there.
+            if i > 3 && at(i - 1) > depths.reached {
+                continue;
+            }
+            let d = at(i);
             penetration.clear();
             let w = self.gap + d;
             penetration.extend(gaps[first..end].iter().zip(&normals).map(|(g, n)| n.penetration(w - g)));
@@ -156,6 +170,12 @@ impl Column {
                 let (root, detail) = (d.sqrt(), l.detail);
                 let [a, b, pressure] = [l.a, l.b, detail.pressure].map(|x| x / root);
                 *row = [l.force / (d * root), l.angle, l.y, solver.radius + l.z, a, b, detail.area / d, pressure];
+            }
+        }
+        // Depths that are never reached only have to go on smoothly.
+        for i in 3..self.rows.len() {
+            if self.rows[i] == [0.0; 8] {
+                self.rows[i] = self.rows[i - 1];
             }
         }
         // Patches of a few strips tell nothing: the curve goes on to zero depth and beyond as a line.
