@@ -61,14 +61,16 @@ def run(
     rate: Annotated[float, typer.Option(min=1.0, help="Sample rate of the file [Hz].")] = 200.0,
 ) -> None:
     """Run one scenario and save its time series."""
-    from klingel.cli.progress import simulate_with_bar
+    from klingel.cli.progress import preparing, simulate_with_bar
     from klingel.errors import InputError
     from klingel.result import COMPLETED, prepare, save
     from klingel.scenario import Scenario
 
     read = Scenario.read(scenario)
     try:
-        for table in prepare(read):
+        with preparing():
+            tables = prepare(read)
+        for table in tables:
             typer.echo(table)
         result = simulate_with_bar(read, scenario.stem)
     except InputError as error:  # what only the vehicle at its speed shows to be wrong, such as too little voltage

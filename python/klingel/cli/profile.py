@@ -8,6 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Literal
 
+from klingel.cli.progress import preparing
 from klingel.contact import WheelRailPair, profile_of
 from klingel.errors import InputError
 from klingel.report.contact import contact_report
@@ -52,7 +53,9 @@ def draw(
         radius=radius,
         normal=normal,  # type: ignore[arg-type]  # it refuses other words
     )
-    say(f"{pair}: {pair.prepare()}")
+    with preparing():
+        prepared = pair.prepare()
+    say(f"{pair}: {prepared}")
     if out.suffix in PAGES:
         return contact_report(pair, wheel_load).save(out)
     from klingel.plot.contact import overview

@@ -6,7 +6,9 @@ from __future__ import annotations
 import threading
 from typing import TYPE_CHECKING
 
+from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.status import Status
 
 from klingel import result
 from klingel.scenario import Scenario
@@ -16,6 +18,11 @@ if TYPE_CHECKING:
 
 REFRESH = 0.1
 """Seconds between two looks at the run."""
+
+
+def preparing() -> Status:
+    """Something that moves while contact tables are compiled, which takes some seconds for a new pair."""
+    return Console(stderr=True).status("contact table: compiling, some seconds for a new pair")
 
 
 def simulate_with_bar(scenario: Scenario, title: str) -> xr.Dataset:

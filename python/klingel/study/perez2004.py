@@ -130,10 +130,11 @@ def run(
 
 def _prepare(runs: Mapping[str, Run], console: Console) -> None:
     """Have the contact tables ready before the threads start, and say what that took."""
-    for one in runs.values():
-        for table in result.prepare(one.scenario()):
-            if table.origin != "memory":
-                console.print(f"{one.vehicle}: {table}", highlight=False)
+    with console.status("contact tables: compiling, some seconds for a new pair"):
+        for one in runs.values():
+            for table in result.prepare(one.scenario()):
+                if table.origin != "memory":
+                    console.print(f"{one.vehicle}: {table}", highlight=False)
 
 
 def _console() -> Console:
