@@ -36,6 +36,11 @@ pub enum ContactError {
     WrongUnits { what: String, width: f64 },
     #[error("{what}: {value} is outside {least} to {most}; {remedy}")]
     OutOfRange { what: String, value: f64, least: f64, most: f64, remedy: String },
+    #[error(
+        "exact creep force at the scaled creepages {creepage:?}: residual {residual} after {steps} steps; \
+         start from a solution nearby, or take fewer elements"
+    )]
+    NoConvergence { creepage: [f64; 3], steps: usize, residual: f64 },
     #[error("wheel and rail never meet at a shift of {shift} m and a roll of {roll} rad; check profiles and gauge")]
     NoContact { shift: f64, roll: f64 },
 }

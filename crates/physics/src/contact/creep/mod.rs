@@ -1,6 +1,7 @@
 //! Creep forces of one elliptic contact patch: linear, Polach, FASTSIM, chosen by `CreepLaw`.
 //! Creepages of the wheel over the rail; a positive creepage gives a negative force on the wheel.
 
+mod exact;
 mod fastsim;
 mod kalker;
 mod linear;
@@ -8,6 +9,7 @@ mod polach;
 #[cfg(test)]
 mod tests;
 
+pub use exact::{Exact, ExactSolution, exact_force};
 pub use fastsim::MOST_ELEMENTS;
 pub use kalker::Kalker;
 

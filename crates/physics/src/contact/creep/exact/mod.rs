@@ -1,0 +1,160 @@
+//! Exact theory: steady rolling of a Hertzian ellipse on elastic half-spaces (Kalker's variational theory).
+//! For reference data and tables, not for the simulation loop; the derivation is in docs/theory/exact.md.
+
+mod friction;
+mod grid;
+mod influence;
+mod linear;
+mod newton;
+mod products;
+#[cfg(test)]
+mod tests;
+
+use super::RollingContact;
+use crate::contact::{ContactError, Material};
+use grid::Grid;
+use newton::TOLERANCE;
+
+/// Least and most elements along and across, and semi-axes' ratios.
+pub const ELEMENTS: [usize; 2] = [4, 160];
+pub const RATIOS: [f64; 2] = [0.02, 50.0];
+
+/// Where the rigid slip of an element is taken, in elements ahead of its middle.
+///
+/// The displacement is differenced over one element, so its slip belongs half an element ahead, while the traction in
+/// full sliding belongs to the middle. Neither end is right everywhere; the forces of spin converge best in between,
+/// and at the value below they agree with CONTACT's at the same grid (docs/theory/exact.md has the figures).
+const SLIP_POINT: f64 = 1.0 / 6.0;
+
+/// One contact ellipse cut into elements, ready for any creepage.
+///
+/// ```
+/// use klingel_physics::contact::creep::Exact;
+/// let ellipse = Exact::new(1.5, 0.28, [16, 16]).unwrap();
+/// let found = ellipse.solve([0.1, 0.0, 0.0]).unwrap();
+/// assert!(found.force[0] < -0.3 && found.force[0] > -0.5 && found.force[1].abs() < 1e-6);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Exact {
+    grid: Grid,
+}
+
+/// Forces and what they were made of.
+#[derive(Clone, Debug)]
+pub struct ExactSolution {
+    /// [Fx, Fy] over mu N and Mz over mu N sqrt(ab), on the wheel; x forward, y right, z down.
+    pub force: [f64; 3],
+    /// Elements that stick and that slip.
+    pub sticking: usize,
+    pub slipping: usize,
+    /// Steps of Newton's method, and the part by which the laws of friction would still change the tractions.
+    pub steps: usize,
+    pub residual: f64,
+    tractions: Vec<f64>,
+}
+
+impl Exact {
+    /// The ellipse with the semi-axes' ratio a/b (a along the rolling direction) in a box of `elements` along and across.
+    ///
+    /// # Errors
+    /// A ratio outside `RATIOS`, Poisson's ratio outside 0 to 0.5, a number of elements outside `ELEMENTS`.
+    pub fn new(ratio: f64, poisson: f64, elements: [usize; 2]) -> Result<Self, ContactError> {
+        let [few, many] = ELEMENTS.map(|n| n as f64);
+        check("ratio of the semi-axes a/b", ratio, RATIOS[0], RATIOS[1], "slender patches are line contacts")?;
+        check("Poisson's ratio", poisson, 0.0, 0.5, "steel has 0.28")?;
+        for n in elements {
+            check("number of elements", n as f64, few, many, "40 x 40 is usual")?;
+        }
+        Ok(Self { grid: Grid::new(ratio, poisson, elements) })
+    }
+
+    /// Forces at the creepages [xi, eta, phi sqrt(ab)], each times G a b/(mu N).
+    ///
+    /// # Errors
+    /// A creepage that is not finite; no convergence, which has not been seen.
+    pub fn solve(&self, creepage: [f64; 3]) -> Result<ExactSolution, ContactError> {
+        self.solve_from(creepage, None)
+    }
+
+    /// The same, from a solution of the same ellipse at a creepage nearby, which takes fewer steps.
+    ///
+    /// # Errors
+    /// As `solve`.
+    pub fn solve_from(&self, creepage: [f64; 3], start: Option<&ExactSolution>) -> Result<ExactSolution, ContactError> {
+        for (what, c) in ["longitudinal creepage", "lateral creepage", "spin"].into_iter().zip(creepage) {
+            check(what, c, f64::MIN, f64::MAX, "creepages are finite numbers")?;
+        }
+        let n = self.grid.size();
+        let start = start.map(|s| &s.tractions).filter(|t| t.len() == 2 * n);
+        let rigid = self.rigid_slip(creepage);
+        let found = newton::solve(&self.grid, &rigid, start.cloned().unwrap_or_else(|| vec![0.0; 2 * n]));
+        if !(found.residual <= TOLERANCE) {
+            return Err(ContactError::NoConvergence { creepage, steps: found.steps, residual: found.residual });
+        }
+        let area = self.grid.sides[0] * self.grid.sides[1];
+        let (mut force, mut count) = ([0.0; 3], 0);
+        for (x, y, k) in self.grid.elements() {
+            let p = [found.tractions[k], found.tractions[n + k]].map(|p| p * area);
+            force[0] += p[0];
+            force[1] += p[1];
+            force[2] += x * p[1] - y * p[0];
+            count += 1;
+        }
+        Ok(ExactSolution {
+            force,
+            sticking: count - found.slipping,
+            slipping: found.slipping,
+            steps: found.steps,
+            residual: found.residual,
+            tractions: found.tractions,
+        })
+    }
+
+    /// Slip of every element while the wheel, if it were rigid, rolls by one element.
+    fn rigid_slip(&self, [xi, eta, phi]: [f64; 3]) -> Vec<f64> {
+        let (n, step) = (self.grid.size(), self.grid.sides[0]);
+        let mut slip = vec![0.0; 2 * n];
+        for (x, y, k) in self.grid.elements() {
+            slip[k] = (xi - phi * y) * step;
+            slip[n + k] = (eta + phi * (x + SLIP_POINT * step)) * step;
+        }
+        slip
+    }
+}
+
+/// [Fx, Fy, Mz] on the wheel of one contact, N and N m, axes and signs as everywhere (x forward, y right, z down).
+///
+/// ```
+/// use klingel_physics::contact::{Material, creep::{RollingContact, exact_force}};
+/// let patch = RollingContact { a: 6e-3, b: 4e-3, normal_force: 5e4, friction: 0.3, xi: 1e-3, eta: 0.0, phi: 0.0 };
+/// let [fx, fy, _] = exact_force(&patch, &Material::STEEL, [12, 12]).unwrap();
+/// assert!(fx < -5e3 && fx > -1.5e4 && fy.abs() < 1.0);
+/// ```
+///
+/// # Errors
+/// As `Exact::new` and `Exact::solve`; a negative load or friction coefficient.
+pub fn exact_force(
+    c: &RollingContact<f64>,
+    material: &Material,
+    elements: [usize; 2],
+) -> Result<[f64; 3], ContactError> {
+    check("semi-axis a", c.a, f64::MIN_POSITIVE, f64::MAX, "it is a length in metres")?;
+    check("semi-axis b", c.b, f64::MIN_POSITIVE, f64::MAX, "it is a length in metres")?;
+    check("normal force", c.normal_force, 0.0, f64::MAX, "a wheel only presses")?;
+    check("friction coefficient", c.friction, 0.0, f64::MAX, "dry rails have 0.3 to 0.5")?;
+    let ellipse = Exact::new(c.a / c.b, material.poisson, elements)?;
+    let (limit, mean) = (c.friction * c.normal_force, (c.a * c.b).sqrt());
+    if limit == 0.0 {
+        return Ok([0.0; 3]);
+    }
+    let scale = material.shear_modulus() * mean * mean / limit;
+    let [fx, fy, mz] = ellipse.solve([c.xi * scale, c.eta * scale, c.phi * mean * scale])?.force;
+    Ok([fx * limit, fy * limit, mz * limit * mean])
+}
+
+fn check(what: &str, value: f64, least: f64, most: f64, remedy: &str) -> Result<(), ContactError> {
+    if (least..=most).contains(&value) {
+        return Ok(());
+    }
+    Err(ContactError::OutOfRange { what: what.into(), value, least, most, remedy: remedy.into() })
+}
