@@ -70,6 +70,21 @@ impl Grid {
         iy * self.nx + ix
     }
 
+    /// The tractions `p` of a coarser division of the same ellipse, in the same parts of the friction bound.
+    pub fn refined(&self, coarse: &Self, p: &[f64]) -> Vec<f64> {
+        let mut fine = vec![0.0; 2 * self.size()];
+        for iy in 0..self.ny {
+            for ix in self.span[iy].clone() {
+                let (k, c) = (self.place(ix, iy), coarse.place(ix * coarse.nx / self.nx, iy * coarse.ny / self.ny));
+                if coarse.bound[c] > 0.0 {
+                    let scale = self.bound[k] / coarse.bound[c];
+                    (fine[k], fine[self.size() + k]) = (scale * p[c], scale * p[coarse.size() + c]);
+                }
+            }
+        }
+        fine
+    }
+
     /// Slip along and across that an element's traction causes `ahead` elements in front of it.
     /// Within a strip neither direction causes the other.
     pub fn along_strip(&self, ahead: isize) -> [f64; 2] {

@@ -56,8 +56,7 @@ mod tests {
     fn closed_integrals_are_the_sums_of_point_loads() {
         let sides = [0.3, 0.2];
         for (x, y) in [(0.3, 0.0), (0.0, 0.4), (-0.6, 0.2), (2.1, -1.4), (-0.3, -0.2)] {
-            let (own, sum) =
-                (Influence::of_rectangle(x, y, sides, 0.28), summed(x, y, sides, 0.28, 400));
+            let (own, sum) = (Influence::of_rectangle(x, y, sides, 0.28), summed(x, y, sides, 0.28, 400));
             for (own, sum) in [(own.xx, sum.xx), (own.yy, sum.yy), (own.xy, sum.xy)] {
                 assert!((own - sum).abs() < 1e-5 * 0.06, "{x} {y}: {own} {sum}");
             }

@@ -13,11 +13,14 @@ mod tests;
 use super::RollingContact;
 use crate::contact::{ContactError, Material};
 use grid::Grid;
-use newton::TOLERANCE;
+use newton::{Found, TOLERANCE};
 
 /// Least and most elements along and across, and semi-axes' ratios.
 pub const ELEMENTS: [usize; 2] = [4, 160];
 pub const RATIOS: [f64; 2] = [0.02, 50.0];
+
+/// Fewest elements of a division that gives a start for a finer one.
+const COARSEST: usize = 10;
 
 /// Where the rigid slip of an element is taken, in elements ahead of its middle.
 ///
@@ -37,6 +40,8 @@ const SLIP_POINT: f64 = 1.0 / 6.0;
 #[derive(Clone, Debug)]
 pub struct Exact {
     grid: Grid,
+    /// Half as many elements either way, whose solution is a start.
+    coarse: Option<Box<Exact>>,
 }
 
 /// Forces and what they were made of.
@@ -65,7 +70,13 @@ impl Exact {
         for n in elements {
             check("number of elements", n as f64, few, many, "40 x 40 is usual")?;
         }
-        Ok(Self { grid: Grid::new(ratio, poisson, elements) })
+        Ok(Self::divided(ratio, poisson, elements))
+    }
+
+    fn divided(ratio: f64, poisson: f64, elements: [usize; 2]) -> Self {
+        let half = elements.map(|n| n / 2);
+        let coarse = half.iter().all(|&n| n >= COARSEST).then(|| Box::new(Self::divided(ratio, poisson, half)));
+        Self { grid: Grid::new(ratio, poisson, elements), coarse }
     }
 
     /// Forces at the creepages [xi, eta, phi sqrt(ab)], each times G a b/(mu N).
@@ -86,8 +97,7 @@ impl Exact {
         }
         let n = self.grid.size();
         let start = start.map(|s| &s.tractions).filter(|t| t.len() == 2 * n);
-        let rigid = self.rigid_slip(creepage);
-        let found = newton::solve(&self.grid, &rigid, start.cloned().unwrap_or_else(|| vec![0.0; 2 * n]));
+        let found = self.tractions(creepage, start);
         if !(found.residual <= TOLERANCE) {
             return Err(ContactError::NoConvergence { creepage, steps: found.steps, residual: found.residual });
         }
@@ -108,6 +118,16 @@ impl Exact {
             residual: found.residual,
             tractions: found.tractions,
         })
+    }
+
+    /// From the given tractions, or else from those of the coarser division.
+    fn tractions(&self, creepage: [f64; 3], start: Option<&Vec<f64>>) -> Found {
+        let start = match (start, &self.coarse) {
+            (Some(start), _) => start.clone(),
+            (None, Some(coarse)) => self.grid.refined(&coarse.grid, &coarse.tractions(creepage, None).tractions),
+            (None, None) => vec![0.0; 2 * self.grid.size()],
+        };
+        newton::solve(&self.grid, &self.rigid_slip(creepage), start)
     }
 
     /// Slip of every element while the wheel, if it were rigid, rolls by one element.
