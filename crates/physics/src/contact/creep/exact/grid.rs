@@ -125,13 +125,11 @@ impl Grid {
 /// Differences of the influence over one element of rolling: a particle comes from the element ahead of it.
 fn kernel_row(nx: usize, dy: usize, sides: [f64; 2], poisson: f64) -> [Vec<f64>; 3] {
     let at = |dx: f64| Influence::of_rectangle(dx * sides[0], dy as f64 * sides[1], sides, poisson);
-    let mut row = [(); 3].map(|()| vec![0.0; 2 * nx - 2 + BLOCK]);
-    for k in 0..2 * nx - 1 {
+    let step = |k: usize| {
         let ahead = k as f64 - (nx - 1) as f64;
         let (now, before) = (at(ahead), at(ahead + 1.0));
-        row[0][k] = now.xx - before.xx;
-        row[1][k] = now.xy - before.xy;
-        row[2][k] = now.yy - before.yy;
-    }
-    row
+        [now.xx - before.xx, now.xy - before.xy, now.yy - before.yy]
+    };
+    let steps: Vec<_> = (0..2 * nx - 1).map(step).chain([[0.0; 3]; BLOCK - 1]).collect();
+    [0, 1, 2].map(|c| steps.iter().map(|s| s[c]).collect())
 }

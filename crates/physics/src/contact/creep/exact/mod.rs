@@ -14,6 +14,7 @@ use super::RollingContact;
 use crate::contact::{ContactError, Material};
 use grid::Grid;
 use newton::{Found, TOLERANCE};
+use rayon::prelude::*;
 
 /// Least and most elements along and across, and semi-axes' ratios.
 pub const ELEMENTS: [usize; 2] = [4, 160];
@@ -98,7 +99,7 @@ impl Exact {
         let n = self.grid.size();
         let start = start.map(|s| &s.tractions).filter(|t| t.len() == 2 * n);
         let found = self.tractions(creepage, start);
-        if !(found.residual <= TOLERANCE) {
+        if found.residual > TOLERANCE || found.residual.is_nan() {
             return Err(ContactError::NoConvergence { creepage, steps: found.steps, residual: found.residual });
         }
         let area = self.grid.sides[0] * self.grid.sides[1];
@@ -118,6 +119,14 @@ impl Exact {
             residual: found.residual,
             tractions: found.tractions,
         })
+    }
+
+    /// Forces at many creepages, on all cores.
+    ///
+    /// # Errors
+    /// As `solve`, for the first creepage that fails.
+    pub fn forces(&self, creepages: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, ContactError> {
+        creepages.par_iter().map(|&c| self.solve(c).map(|found| found.force)).collect()
     }
 
     /// From the given tractions, or else from those of the coarser division.

@@ -21,11 +21,11 @@ const CREEPAGES: [[f64; 3]; 7] = [
 #[test]
 fn forces_are_those_of_contact() {
     let (mut sum, mut most) = (0.0, 0.0_f64);
+    let scale = 82e9 * 36e-6 / 24e3;
     for (ratio, rows) in CONTACT {
-        let ellipse = ellipse(ratio, 40);
-        for [xi, eta, phi, fx, fy, mz] in rows {
-            let scale = 82e9 * 36e-6 / 24e3;
-            let f = ellipse.solve([xi * scale, eta * scale, phi * 6e-3 * scale]).unwrap().force;
+        let creepages = rows.map(|[xi, eta, phi, ..]| [xi * scale, eta * scale, phi * 6e-3 * scale]);
+        let forces = ellipse(ratio, 40).forces(&creepages).unwrap();
+        for ([xi, eta, phi, fx, fy, mz], f) in rows.into_iter().zip(forces) {
             let error = (f[0] - fx).hypot(f[1] - fy);
             assert!((f[2] - mz).abs() < 0.005, "{ratio} {xi} {eta} {phi}: {f:?}");
             sum += error * error;
@@ -92,27 +92,25 @@ fn friction_bounds_the_force_and_full_sliding_reaches_it() {
     }
 }
 
-/// Carter's long cylinder: a patch that is wide across behaves in its middle like the plane problem.
 #[test]
 fn a_wide_patch_follows_carter() {
-    // Plane strain, strip by strip, longitudinal: with the half ellipsoid's strip at y of half length
-    // l = a sqrt(1 - y^2/b^2), |xi| = mu l p0 2 (1 - nu)/(a 2 G) (1 - sqrt(1 - f)), f the strip's part of full sliding.
-    let (nu, ratio) = (0.28, 0.02_f64);
-    let ellipse = Exact::new(ratio, nu, [40, 12]).unwrap();
-    for xi in [0.02, 0.05, 0.1, 0.15] {
-        // Scaled: p0 = 3/(2 pi) mu N/(ab), and p0/a is the same for every strip; a = sqrt(ratio).
-        let full = 3.0 / (2.0 * core::f64::consts::PI) / ratio.sqrt() * 2.0 * (1.0 - nu);
-        let n = 4000;
-        let force: f64 = (0..n)
-            .map(|i| {
-                let y = (f64::from(i) + 0.5) / f64::from(n);
-                let l = (1.0 - y * y).sqrt();
-                let rest = (1.0 - xi / (full * ratio.sqrt() * l)).max(0.0);
-                1.5 * l * l * (1.0 - rest * rest) / f64::from(n)
-            })
-            .sum();
-        let own = -ellipse.solve([xi, 0.0, 0.0]).unwrap().force[0];
-        println!("{xi} {own} {force}");
+    // In a patch that is wide across, every strip rolls like Carter's cylinder (plane strain): with the half length l and
+    // the bound's peak q, both as sqrt(1 - y^2/b^2), it adheres up to the creepage 2 (1 - nu) q/(2 G) and then slides, and
+    // its part of full sliding is 1 - (1 - xi/full)^2. All strips share q/l, so the sum over y is one integral.
+    let (nu, ratio, n) = (0.28, 0.02, 4000);
+    let [coarse, fine] = [40, 80].map(|nx| Exact::new(ratio, nu, [nx, 8]).unwrap());
+    let peak = 1.5 / core::f64::consts::PI;
+    for xi in [0.02, 0.1, 0.15] {
+        let strip = |i: i32| {
+            let l = (1.0 - ((f64::from(i) + 0.5) / f64::from(n)).powi(2)).sqrt();
+            let rest = (1.0 - xi / (2.0 * (1.0 - nu) * peak * l)).max(0.0);
+            1.5 * l * l * (1.0 - rest * rest) / f64::from(n)
+        };
+        let carter: f64 = (0..n).map(strip).sum();
+        // The error halves with twice the elements along; what stays comes from the ends of the patch.
+        let [coarse, fine] = [&coarse, &fine].map(|e| -e.solve([xi, 0.0, 0.0]).unwrap().force[0]);
+        assert!((fine / carter - 1.0).abs() < 0.01 && (coarse / carter - 1.0).abs() < 0.02, "{xi}: {fine} {carter}");
+        assert!(((2.0 * fine - coarse) / carter - 1.0).abs() < 2e-3, "{xi}: {coarse} {fine} {carter}");
     }
 }
 
