@@ -98,7 +98,7 @@ fn a_wide_patch_follows_carter() {
     // the bound's peak q, both as sqrt(1 - y^2/b^2), it adheres up to the creepage 2 (1 - nu) q/(2 G) and then slides, and
     // its part of full sliding is 1 - (1 - xi/full)^2. All strips share q/l, so the sum over y is one integral.
     let (nu, ratio, n) = (0.28, 0.02, 4000);
-    let [coarse, fine] = [40, 80].map(|nx| Exact::new(ratio, nu, [nx, 8]).unwrap());
+    let [coarse, fine] = [20, 40].map(|nx| Exact::new(ratio, nu, [nx, 20]).unwrap());
     let peak = 1.5 / core::f64::consts::PI;
     for xi in [0.02, 0.1, 0.15] {
         let strip = |i: i32| {
@@ -109,8 +109,8 @@ fn a_wide_patch_follows_carter() {
         let carter: f64 = (0..n).map(strip).sum();
         // The error halves with twice the elements along; what stays comes from the ends of the patch.
         let [coarse, fine] = [&coarse, &fine].map(|e| -e.solve([xi, 0.0, 0.0]).unwrap().force[0]);
-        assert!((fine / carter - 1.0).abs() < 0.01 && (coarse / carter - 1.0).abs() < 0.02, "{xi}: {fine} {carter}");
-        assert!(((2.0 * fine - coarse) / carter - 1.0).abs() < 2e-3, "{xi}: {coarse} {fine} {carter}");
+        assert!((fine / carter - 1.0).abs() < 0.015 && (coarse / carter - 1.0).abs() < 0.03, "{xi}: {fine} {carter}");
+        assert!(((2.0 * fine - coarse) / carter - 1.0).abs() < 3e-3, "{xi}: {coarse} {fine} {carter}");
     }
 }
 
