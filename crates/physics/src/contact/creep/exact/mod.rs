@@ -102,23 +102,45 @@ impl Exact {
         if found.residual > TOLERANCE || found.residual.is_nan() {
             return Err(ContactError::NoConvergence { creepage, steps: found.steps, residual: found.residual });
         }
-        let area = self.grid.sides[0] * self.grid.sides[1];
-        let (mut force, mut count) = ([0.0; 3], 0);
-        for (x, y, k) in self.grid.elements() {
-            let p = [found.tractions[k], found.tractions[n + k]].map(|p| p * area);
-            force[0] += p[0];
-            force[1] += p[1];
-            force[2] += x * p[1] - y * p[0];
-            count += 1;
-        }
         Ok(ExactSolution {
-            force,
-            sticking: count - found.slipping,
+            force: self.resultant(&found.tractions),
+            sticking: self.grid.elements().count() - found.slipping,
             slipping: found.slipping,
             steps: found.steps,
             residual: found.residual,
             tractions: found.tractions,
         })
+    }
+
+    /// Derivatives of the force: row i, column j is the change of `found.force[i]` with `creepage[j]`.
+    ///
+    /// Exact but for the elements that go over from adhesion to slip, and those carry the same traction either way.
+    ///
+    /// ```
+    /// use klingel_physics::contact::creep::Exact;
+    /// let ellipse = Exact::new(1.0, 0.28, [12, 12]).unwrap();
+    /// let slopes = ellipse.slopes([0.0; 3], &ellipse.solve([0.0; 3]).unwrap());
+    /// assert!((slopes[0][0] + 4.2).abs() < 0.4); // -C11
+    /// ```
+    pub fn slopes(&self, creepage: [f64; 3], found: &ExactSolution) -> [[f64; 3]; 3] {
+        let directions = [0, 1, 2].map(|j| self.rigid_slip(core::array::from_fn(|i| f64::from(i == j))));
+        let rigid = self.rigid_slip(creepage);
+        let changes = newton::changes(&self.grid, &rigid, found.tractions.clone(), &directions);
+        let columns = changes.iter().map(|change| self.resultant(change)).collect::<Vec<_>>();
+        [0, 1, 2].map(|i| [0, 1, 2].map(|j| columns[j][i]))
+    }
+
+    /// Forces and moment of tractions.
+    fn resultant(&self, tractions: &[f64]) -> [f64; 3] {
+        let (n, area) = (self.grid.size(), self.grid.sides[0] * self.grid.sides[1]);
+        let mut force = [0.0; 3];
+        for (x, y, k) in self.grid.elements() {
+            let p = [tractions[k] * area, tractions[n + k] * area];
+            force[0] += p[0];
+            force[1] += p[1];
+            force[2] += x * p[1] - y * p[0];
+        }
+        force
     }
 
     /// Forces at many creepages, on all cores.

@@ -31,6 +31,12 @@ struct State {
 }
 
 impl State {
+    fn of(grid: &Grid, rigid: &[f64], p: Vec<f64>) -> Self {
+        let mut slip = vec![0.0; p.len()];
+        grid.slip(&p, &mut slip);
+        Self::new(grid, rigid, p, slip)
+    }
+
     fn new(grid: &Grid, rigid: &[f64], p: Vec<f64>, slip: Vec<f64>) -> Self {
         let (n, own) = (grid.size(), grid.along_strip(0));
         let nothing = Traction { value: [0.0; 2], slope: [0.0; 3], slips: false };
@@ -59,6 +65,17 @@ impl State {
             slip[k] = v[k] - (xx * s[0] + xy * s[1]);
             slip[n + k] = v[n + k] - (xy * s[0] + yy * s[1]);
         }
+    }
+
+    /// What changes the residual by `b`, to a part of b.
+    fn inverse(&self, grid: &Grid, strips: &[Lu], b: &[f64], tolerance: f64) -> Vec<f64> {
+        let product = |v: &[f64]| {
+            let mut out = vec![0.0; v.len()];
+            grid.slip(v, &mut out);
+            self.derivative(grid, v, &mut out);
+            out
+        };
+        gmres(b, product, |v| solve_strips(grid, strips, v), tolerance, MOST_PRODUCTS)
     }
 
     /// The derivative within every strip, ready to be solved: what one strip does to the others is left to GMRES.
@@ -99,27 +116,33 @@ fn solve_strips(grid: &Grid, strips: &[Lu], v: &[f64]) -> Vec<f64> {
 
 /// The tractions for the slip `rigid` (a field) that a rigid wheel would have over one element of rolling.
 pub(super) fn solve(grid: &Grid, rigid: &[f64], start: Vec<f64>) -> Found {
-    let mut slip = vec![0.0; 2 * grid.size()];
-    grid.slip(&start, &mut slip);
-    let mut state = State::new(grid, rigid, start, slip);
+    let mut state = State::of(grid, rigid, start);
     let mut steps = 0;
     while state.error() > TOLERANCE && steps < MOST_STEPS {
         steps += 1;
-        let strips = state.strips(grid);
-        let product = |v: &[f64]| {
-            let mut out = vec![0.0; v.len()];
-            grid.slip(v, &mut out);
-            state.derivative(grid, v, &mut out);
-            out
-        };
-        let precondition = |v: &[f64]| solve_strips(grid, &strips, v);
-        let step = gmres(&state.residual, product, precondition, INNER_TOLERANCE, MOST_PRODUCTS);
+        let step = state.inverse(grid, &state.strips(grid), &state.residual, INNER_TOLERANCE);
         let mut slip = vec![0.0; step.len()];
         grid.slip(&step, &mut slip);
         state = shortened(grid, rigid, &state, &step, &slip);
     }
     let slipping = state.law.iter().filter(|t| t.slips).count();
     Found { slipping, steps, residual: state.error(), tractions: state.p }
+}
+
+/// How the tractions `p` that belong to the slip `rigid` change with it, in each of some directions (fields).
+pub(super) fn changes(grid: &Grid, rigid: &[f64], p: Vec<f64>, directions: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let state = State::of(grid, rigid, p);
+    let (n, strips) = (grid.size(), state.strips(grid));
+    let change = |d: &Vec<f64>| {
+        let mut by_law = vec![0.0; 2 * n];
+        for (_, _, k) in grid.elements() {
+            let [xx, xy, yy] = state.law[k].slope;
+            by_law[k] = xx * d[k] + xy * d[n + k];
+            by_law[n + k] = xy * d[k] + yy * d[n + k];
+        }
+        state.inverse(grid, &strips, &by_law, TOLERANCE)
+    };
+    directions.iter().map(change).collect()
 }
 
 /// The state after the step, after half of it, ..., whichever first brings a fair gain, or the best of them.

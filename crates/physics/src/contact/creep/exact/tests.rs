@@ -115,6 +115,28 @@ fn a_wide_patch_follows_carter() {
 }
 
 #[test]
+fn slopes_are_difference_quotients() {
+    let ellipse = ellipse(1.3, 14);
+    for creepage in CREEPAGES {
+        let slopes = ellipse.slopes(creepage, &ellipse.solve(creepage).unwrap());
+        for j in 0..3 {
+            let h = 1e-3 * (0.02 + creepage[j].abs());
+            let [up, down] = [h, -h].map(|h| {
+                let mut c = creepage;
+                c[j] += h;
+                ellipse.solve(c).unwrap().force
+            });
+            for i in 0..3 {
+                let difference = (up[i] - down[i]) / (2.0 * h);
+                // Elements that begin to slip within the difference bend it a little.
+                let tolerance = 0.01 * difference.abs() + 2e-3;
+                assert!((slopes[i][j] - difference).abs() < tolerance, "{creepage:?} {i} {j}: {slopes:?} {difference}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_start_nearby_saves_steps_and_changes_nothing() {
     let ellipse = ellipse(0.8, 20);
     let first = ellipse.solve([0.15, 0.1, 0.2]).unwrap();
