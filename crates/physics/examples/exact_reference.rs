@@ -10,7 +10,7 @@ const FRICTION: f64 = 0.3;
 /// Geometric mean of the semi-axes, m.
 const MEAN: f64 = 6e-3;
 
-/// Kind and [xi, eta, phi] as parts of the creepages whose linear forces are mu N: from 0.05 to 10 alone, then together.
+/// Kind and [xi, eta, phi] as parts of the creepages whose linear forces are mu N: 0.05 to 10 alone, then together.
 fn ladder() -> Vec<(&'static str, [f64; 3])> {
     let mut rows = vec![];
     for l in [0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0, 10.0] {
@@ -42,8 +42,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (a, b) = (MEAN * ratio.sqrt(), MEAN / ratio.sqrt());
     let scale = SHEAR_MODULUS * MEAN * MEAN / (FRICTION * NORMAL_FORCE);
     println!(
-        "# Exact theory, {n}x{n} elements, Hertzian, steady rolling, nu {POISSON}, G {} GPa. Force on the wheel over mu FN, \
-         moment over mu FN sqrt(ab); positive creepage gives negative force; a in the rolling direction",
+        "# Exact theory, {n}x{n} elements, Hertzian, steady rolling, nu {POISSON}, G {} GPa. Force on the wheel over \
+         mu FN, moment over mu FN sqrt(ab); positive creepage gives negative force; a in the rolling direction",
         SHEAR_MODULUS * 1e-9
     );
     println!("aob,kind,a_mm,b_mm,xi,eta,phi_1permm,FN_N,mu,fx_rel,fy_rel,mz_rel_c,n_adh,n_slip");
@@ -53,7 +53,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let [fx, fy, mz] = found.force;
         let [xi, eta, phi] = scaled.map(|c| c / scale);
         println!(
-            "{ratio},{kind},{:.9},{:.9},{xi:.10e},{eta:.10e},{:.10e},{NORMAL_FORCE:?},{FRICTION},{fx:.8},{fy:.8},{mz:.8},{},{}",
+            "{ratio},{kind},{:.9},{:.9},{xi:.10e},{eta:.10e},{:.10e},{NORMAL_FORCE:?},{FRICTION},\
+             {fx:.8},{fy:.8},{mz:.8},{},{}",
             a * 1e3,
             b * 1e3,
             phi / MEAN * 1e-3,

@@ -19,7 +19,7 @@ pub(super) struct Grid {
     /// Greatest traction of every element; 0 outside the ellipse.
     pub bound: Vec<f64>,
     /// Slip along x by x, along one axis by the other, and across by across, for every distance of two strips. At
-    /// `nx - 1 + observed - loaded`, so that the share of one loaded element in a block of neighbours lies side by side.
+    /// `nx - 1 + observed - loaded`, so that one loaded element's share in a block of neighbours lies side by side.
     kernel: Vec<[Vec<f64>; 3]>,
 }
 

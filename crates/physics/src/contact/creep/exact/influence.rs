@@ -3,7 +3,7 @@
 
 use core::f64::consts::PI;
 
-/// Influence of one rectangle: the displacement along x by a traction along x, along y by y, and along one by the other.
+/// Influence of one rectangle: displacement along x by a traction along x, along y by y, and along one by the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Influence {
     pub xx: f64,
@@ -15,8 +15,8 @@ impl Influence {
     /// At (x, y) from the middle of a rectangle with the sides `sides`, times the shear modulus.
     ///
     /// A point load p at the origin displaces the surfaces by [(1 - nu)/R + nu x^2/R^3] p/(pi G) along itself and by
-    /// nu x y/R^3 p/(pi G) across. The integrals of 1/R, x^2/R^3 and x y/R^3 over the rectangle are the alternating sums
-    /// over its corners of y ln(x + R) + x ln(y + R), y ln(x + R) and -R.
+    /// nu x y/R^3 p/(pi G) across. The integrals of 1/R, x^2/R^3 and x y/R^3 over the rectangle are the alternating
+    /// sums over its corners of y ln(x + R) + x ln(y + R), y ln(x + R) and -R.
     pub fn of_rectangle(x: f64, y: f64, sides: [f64; 2], poisson: f64) -> Self {
         let mut sum = Self::default();
         for (i, j) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {

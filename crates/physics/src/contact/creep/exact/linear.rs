@@ -93,7 +93,7 @@ pub(super) fn norm(x: &[f64]) -> f64 {
     dot(x, x).sqrt()
 }
 
-/// x with |b - A x| <= tolerance |b|, or the best within `most` products A v; `precondition` comes near to the inverse of A.
+/// x with |b - A x| <= tolerance |b|, or the best of `most` products A v; `precondition` is nearly the inverse of A.
 pub(super) fn gmres(
     b: &[f64],
     mut product: impl FnMut(&[f64]) -> Vec<f64>,

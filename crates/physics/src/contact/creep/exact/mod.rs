@@ -60,7 +60,7 @@ pub struct ExactSolution {
 }
 
 impl Exact {
-    /// The ellipse with the semi-axes' ratio a/b (a along the rolling direction) in a box of `elements` along and across.
+    /// The ellipse with the semi-axes' ratio a/b (a in the rolling direction) in a box of `elements` along and across.
     ///
     /// # Errors
     /// A ratio outside `RATIOS`, Poisson's ratio outside 0 to 0.5, a number of elements outside `ELEMENTS`.
