@@ -13,7 +13,7 @@ export PYO3_PYTHON := $(CURDIR)/$(BIN)/python
 export VIRTUAL_ENV := $(CURDIR)/$(VENV)
 
 .DEFAULT_GOAL := help
-.PHONY: help build study test test-rust test-python lint format bench docs-check clean
+.PHONY: help build study test test-rust test-python validate lint format bench docs-check clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -31,18 +31,21 @@ test-rust: $(VENV)/.packages ## Rust tests
 test-python: build ## Python tests and doctests
 	$(BIN)/python -m pytest
 
+validate: build ## every validation case; writes docs/validation.md
+	$(BIN)/python -m validation
+
 lint: build ## rustfmt, clippy, ruff, mypy
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
-	$(BIN)/ruff format --check python tests
-	$(BIN)/ruff check python tests
+	$(BIN)/ruff format --check python tests validation
+	$(BIN)/ruff check python tests validation
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest klingel._core
 
 format: $(VENV)/.packages ## format Rust and Python
 	cargo fmt --all
-	$(BIN)/ruff format python tests
-	$(BIN)/ruff check --fix python tests
+	$(BIN)/ruff format python tests validation
+	$(BIN)/ruff check --fix python tests validation
 
 bench: $(VENV)/.packages ## Rust benchmarks
 	cargo bench --workspace --locked

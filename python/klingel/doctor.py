@@ -79,11 +79,24 @@ def _core_findings() -> list[Finding]:
         ),
         Finding("CPU features", ", ".join(info["cpu_features"]) or "baseline"),
     ]
+    findings.append(_cache())
     root = checkout()
     if root is None:
         return [*findings, Finding("sources", f"installed, built from {info['source_hash'][:12]}")]
     fresh = source_hash(root) == info["source_hash"]
     return [*findings, Finding("sources", "as in the checkout" if fresh else "changed since: run `make build`", fresh)]
+
+
+def _cache() -> Finding:
+    """The contact tables on disk; a damaged one is harmless, the next run replaces it."""
+    found = core().cache()
+    if found is None:
+        return Finding("cache", "off: contact tables are compiled by every process")
+    folder, tables = found
+    damaged = [name for name, _, whole in tables if not whole]
+    size = sum(size for _, size, _ in tables) / 1e6
+    text = f"{folder}: {len(tables)} contact tables, {size:.0f} MB, check sums "
+    return Finding("cache", text + (f"wrong in {', '.join(damaged)}: remove it" if damaged else "right"), not damaged)
 
 
 def _package(name: str) -> Finding:

@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
+from klingel.contact import profile_of
 from klingel.drives import operating_point, running_resistance
 from klingel.scenario import Scenario
 from klingel.track import CANT_BASE, Track
@@ -77,6 +78,7 @@ def lower(scenario: Scenario) -> Spec:
             "law": scenario.creep_law,
             "elements": list(scenario.creep_elements),
             "contact_dissipation": CONTACT_DISSIPATION,
+            **scenario.creep_options.spec(),
         },
         "bushings": [*_primary(vehicle, wheels), *_secondary(vehicle)],
         "maxwells": [*_primary_dampers(vehicle, wheels), *_secondary_dampers(vehicle)],
@@ -135,13 +137,15 @@ def _wheelset(vehicle: Vehicle, axle: Axle) -> Spec:
 
 def _pair(scenario: Scenario) -> Spec:
     vehicle = scenario.vehicle
+    wheel = scenario.wheel or profile_of(vehicle.wheel_profile.name, "wheel")
     return {
-        "wheel": {"named": vehicle.wheel_profile.name.lower()},
-        "rail": {"named": scenario.rail.lower()},
+        "wheel": wheel.spec(),
+        "rail": scenario.rail.spec(),
         "rail_inclination": scenario.rail_inclination,
         "gauge": scenario.gauge,
         "flange_back": vehicle.wheel_profile.flange_back_distance,
         "radius": vehicle.geometry.wheel_radius,
+        "normal": scenario.contact,
     }
 
 

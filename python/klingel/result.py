@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from klingel.contact import Prepared
 from klingel.core import core
 from klingel.errors import InputError, RunCancelledError, SimulationError
 from klingel.lower import Spec, lower
@@ -55,6 +56,18 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, strict: bo
     did not complete; RunCancelledError.
     """
     return simulate_spec(lower(scenario), progress=progress, strict=strict)
+
+
+def prepare(scenario: Scenario) -> list[Prepared]:
+    """Compile the contact tables of a scenario, or read them from the cache, so that its runs start at once.
+
+    Done by `simulate` as well; a study does it before its runs. Errors: SimulationError as `simulate`.
+    """
+    extension = core()
+    try:
+        return [Prepared(*each) for each in extension.prepare(json.dumps(lower(scenario), allow_nan=False))]
+    except extension.CoreError as error:
+        raise SimulationError(str(error)) from None
 
 
 def simulate_spec(spec: Spec, *, progress: Progress | None = None, strict: bool = False) -> xr.Dataset:

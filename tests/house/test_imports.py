@@ -25,7 +25,8 @@ FLOORS = [
     {"lower"},
     {"result"},
     {"assess"},
-    {"plot", "report"},
+    {"plot"},
+    {"report"},
     {"study"},
     {"cli"},
 ]

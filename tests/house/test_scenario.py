@@ -133,7 +133,7 @@ def test_runs_from_end_to_end_of_the_track() -> None:
         ({"creep_elements": [10.0, 10]}, "creep_elements = (10.0, 10): is no grid"),
         ({"creep_elements": [True, 10]}, "is no grid"),
         ({"creep_law": 3}, "creep_law = 3: is not known; known: fastsim, linear, polach"),
-        ({"rail": 3}, "rail = 3: is not known; known: 60E1, UIC60"),
+        ({"rail": 3}, "rail = 3: is no profile; give a klingel.contact.Profile"),
         ({"rail": "60E2"}, "did you mean '60E1'"),
         ({"rail_inclination": 20}, "too steep"),
         ({"gauge": "1435 kg"}, "is a mass"),

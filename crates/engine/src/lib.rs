@@ -14,10 +14,11 @@ pub mod rates;
 pub mod simulate;
 pub mod spec;
 pub mod suspension;
+pub mod tables;
 pub mod traction;
 pub mod wheel_rail;
 
-pub use compile::{compile, named_profile};
+pub use compile::{compile, named_profile, pair_geometry, prepare};
 pub use error::{EngineError, Fault};
 pub use model::Model;
 pub use rates::rates;

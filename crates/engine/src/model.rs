@@ -2,6 +2,7 @@
 //! Made by `compile`; read by `rates`; never changed by a run.
 
 use crate::spec::RunSpec;
+use klingel_physics::contact::creep::FallingFriction;
 use klingel_physics::contact::{ContactTable, CreepForce};
 use klingel_physics::drives::{self, Actuator};
 use klingel_physics::elements::{Bushing, Maxwell, Stop};
@@ -32,6 +33,8 @@ pub struct Model {
     pub drag: Option<(usize, [f64; 3])>,
     pub hold: Option<Hold>,
     pub creep: CreepForce,
+    /// How friction falls with the slip velocity, if it does.
+    pub falling_friction: Option<FallingFriction>,
     /// Contact damping over elastic force and approach speed \[s/m\].
     pub contact_dissipation: f64,
     /// Decay rate of each state that the integrator takes exactly \[1/s\]; zero for most.

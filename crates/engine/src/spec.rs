@@ -2,6 +2,7 @@
 //! The only thing that crosses from Python into the core; `compile` turns it into a `Model`.
 
 use crate::control::ControlSpec;
+use klingel_physics::contact::NormalContact;
 use serde::{Deserialize, Serialize};
 
 /// Everything a run needs. Points are in the design frame of the vehicle: x forward from its reference point,
@@ -105,6 +106,28 @@ pub struct PairSpec {
     pub flange_back: f64,
     /// Nominal wheel radius \[m\].
     pub radius: f64,
+    #[serde(default)]
+    pub normal: NormalSpec,
+}
+
+/// How the normal contact is solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NormalSpec {
+    /// Hertz in every zone of the wheel.
+    #[default]
+    Hertz,
+    /// Virtual penetration, not Hertzian.
+    KikPiotrowski,
+}
+
+impl From<NormalSpec> for NormalContact {
+    fn from(normal: NormalSpec) -> Self {
+        match normal {
+            NormalSpec::Hertz => Self::Hertz,
+            NormalSpec::KikPiotrowski => Self::KikPiotrowski,
+        }
+    }
 }
 
 /// A named profile or its points \[m\].
@@ -145,17 +168,37 @@ pub enum Side {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CreepSpec {
-    /// `fastsim`, `polach`, `linear`.
+    /// `linear`, `shen_hedrick_elkins`, `polach`, `fastsim`.
     pub law: String,
     /// Elements along and across the ellipse, FASTSIM only.
     pub elements: [usize; 2],
     /// Contact damping over elastic force and approach speed (Hunt & Crossley) \[s/m\].
     pub contact_dissipation: f64,
+    /// FASTSIM: its three flexibilities blend into one as sliding sets in.
+    #[serde(default)]
+    pub blended: bool,
+    /// FASTSIM: k0, alpha and beta of the reduced initial slope.
+    #[serde(default)]
+    pub slope: Option<[f64; 3]>,
+    /// Polach: kA and kS of the reduced stiffness.
+    #[serde(default)]
+    pub reduction: Option<[f64; 2]>,
+    /// Every law: A and B \[s/m\] of the friction that falls with the slip velocity, mu ((1 - A) exp(-B w) + A).
+    #[serde(default)]
+    pub falling: Option<[f64; 2]>,
 }
 
 impl Default for CreepSpec {
     fn default() -> Self {
-        Self { law: "fastsim".into(), elements: [10, 10], contact_dissipation: 3.0 }
+        Self {
+            law: "fastsim".into(),
+            elements: [10, 10],
+            contact_dissipation: 3.0,
+            blended: false,
+            slope: None,
+            reduction: None,
+            falling: None,
+        }
     }
 }
 

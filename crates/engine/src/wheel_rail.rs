@@ -92,6 +92,10 @@ fn wheel_on_rail<S: Scalar>(
             let v_ref = (mean_speed.square() + CREEP_REFERENCE_FLOOR * CREEP_REFERENCE_FLOOR).sqrt();
             let (xi, eta, phi) = (slip_T.x() / v_ref, slip_T.dot(across) / v_ref, w_T.dot(into_rail) / v_ref);
             let friction = S::constant(wheel.friction);
+            let friction = match &m.falling_friction {
+                Some(falling) => falling.at_creepage(friction, v_ref, xi, eta),
+                None => friction,
+            };
             let rolling = RollingContact { a: patch.a, b: patch.b, normal_force: normal, friction, xi, eta, phi };
             let [fx, fy, mz] = m.creep.force(&rolling);
 

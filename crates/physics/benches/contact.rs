@@ -1,9 +1,9 @@
-//! Cost of the contact of one wheel: reading the table and computing creep forces, in f64 and with derivatives.
+//! Cost of the contact of one wheel: building the table and reading it, in f64 and with derivatives.
 //! Run with `cargo bench -p klingel-physics`.
 
 use divan::{Bencher, black_box};
-use klingel_physics::contact::{ContactTable, CreepForce, CreepLaw, Material, PairGeometry, Profile, RollingContact};
-use klingel_physics::{Dual, Scalar};
+use klingel_physics::Dual;
+use klingel_physics::contact::{ContactTable, Material, NormalContact, PairGeometry, Profile};
 use std::sync::LazyLock;
 
 fn main() {
@@ -21,8 +21,9 @@ fn pair() -> PairGeometry {
     }
 }
 
-static TABLE: LazyLock<ContactTable> =
-    LazyLock::new(|| ContactTable::build(&pair(), &Material::STEEL).expect("S1002 on 60E1 is a valid pair"));
+static TABLE: LazyLock<ContactTable> = LazyLock::new(|| {
+    ContactTable::build(&pair(), &Material::STEEL, NormalContact::Hertz).expect("S1002 on 60E1 is a valid pair")
+});
 
 /// The height w that presses the tread in by 0.07 mm at a shift.
 fn pressed(shift: f64) -> f64 {
@@ -32,7 +33,7 @@ fn pressed(shift: f64) -> f64 {
 
 #[divan::bench(sample_count = 3)]
 fn build() -> ContactTable {
-    ContactTable::build(&pair(), &Material::STEEL).expect("S1002 on 60E1 is a valid pair")
+    ContactTable::build(&pair(), &Material::STEEL, NormalContact::Hertz).expect("S1002 on 60E1 is a valid pair")
 }
 
 /// Tread alone, and tread with root.
@@ -49,31 +50,4 @@ fn table_dual4(bencher: Bencher, shift: f64) {
         let d = |x, i| Dual::<4>::variable(black_box(x), i);
         TABLE.patches(d(shift, 0), d(w, 1), d(1e-4, 2), d(1e-3, 3))
     });
-}
-
-const LAWS: [CreepLaw; 4] =
-    [CreepLaw::Linear, CreepLaw::Polach, CreepLaw::Fastsim { nx: 10, ny: 10 }, CreepLaw::Fastsim { nx: 16, ny: 16 }];
-
-fn patch<S: Scalar>(slip: f64) -> RollingContact<S> {
-    let c = S::constant;
-    let (xi, eta, phi) = (c(slip), c(slip), c(200.0 * slip));
-    RollingContact { a: c(6e-3), b: c(4e-3), normal_force: c(5e4), friction: c(0.3), xi, eta, phi }
-}
-
-#[divan::bench(args = LAWS)]
-fn partial_slip(bencher: Bencher, law: CreepLaw) {
-    let law = CreepForce::new(law, &Material::STEEL).expect("steel");
-    bencher.bench(|| law.force(&black_box(patch::<f64>(1e-3))));
-}
-
-#[divan::bench(args = LAWS)]
-fn adhesion(bencher: Bencher, law: CreepLaw) {
-    let law = CreepForce::new(law, &Material::STEEL).expect("steel");
-    bencher.bench(|| law.force(&black_box(patch::<f64>(1e-5))));
-}
-
-#[divan::bench(args = LAWS)]
-fn partial_slip_dual(bencher: Bencher, law: CreepLaw) {
-    let law = CreepForce::new(law, &Material::STEEL).expect("steel");
-    bencher.bench(|| law.force(&black_box(patch::<Dual<12>>(1e-3))));
 }

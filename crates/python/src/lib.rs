@@ -1,7 +1,11 @@
 //! The Python face of the core: specs in as JSON, arrays out; the interpreter is free while the core works.
 //! Every message of the core is passed on as it is; `klingel.errors` sorts them.
 
+mod creep;
+mod pair;
+
 use klingel_engine::{EngineError, Spec};
+use klingel_physics::contact::ContactError;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyValueError};
@@ -39,6 +43,10 @@ fn raised(error: &EngineError) -> PyErr {
     }
 }
 
+fn refused(error: &ContactError) -> PyErr {
+    CoreError::new_err(error.to_string())
+}
+
 fn parse(spec: &str) -> Result<Spec, EngineError> {
     Ok(serde_json::from_str(spec)?)
 }
@@ -71,6 +79,21 @@ fn simulate<'py>(py: Python<'py>, spec: &str, progress: Option<&Progress>) -> Py
 fn check(py: Python<'_>, spec: &str) -> PyResult<()> {
     py.detach(|| parse(spec).and_then(|s| klingel_engine::compile(&s))).map_err(|e| raised(&e))?;
     Ok(())
+}
+
+/// The contact tables of a spec, one a pair: (compiled, disk or memory; seconds; why it could not be kept on disk).
+#[pyfunction]
+fn prepare(py: Python<'_>, spec: &str) -> PyResult<Vec<(&'static str, f64, Option<String>)>> {
+    let tables = py.detach(|| parse(spec).and_then(|s| klingel_engine::prepare(&s))).map_err(|e| raised(&e))?;
+    Ok(tables.iter().map(pair::note).collect())
+}
+
+/// Folder of the compiled contact tables and its tables (name, bytes, whether the check sum is right); none without one.
+#[pyfunction]
+fn cache(py: Python<'_>) -> Option<(String, Vec<(String, u64, bool)>)> {
+    let folder = klingel_engine::tables::disk::folder()?;
+    let tables = py.detach(|| klingel_engine::tables::disk::check(&folder));
+    Some((folder.display().to_string(), tables))
 }
 
 type Column<'py> = Bound<'py, PyArray1<f64>>;
@@ -118,8 +141,13 @@ fn cpu_features() -> Vec<&'static str> {
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<Progress>()?;
     m.add_function(wrap_pyfunction!(simulate, m)?)?;
+    m.add_class::<pair::ContactPair>()?;
     m.add_function(wrap_pyfunction!(check, m)?)?;
+    m.add_function(wrap_pyfunction!(prepare, m)?)?;
+    m.add_function(wrap_pyfunction!(cache, m)?)?;
     m.add_function(wrap_pyfunction!(profile, m)?)?;
+    m.add_function(wrap_pyfunction!(creep::creep_force, m)?)?;
+    m.add_function(wrap_pyfunction!(creep::creep_laws, m)?)?;
     m.add_function(wrap_pyfunction!(build_info, m)?)?;
     m.add("CoreError", m.py().get_type::<CoreError>())?;
     m.add("Cancelled", m.py().get_type::<Cancelled>())?;

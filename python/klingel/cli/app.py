@@ -63,11 +63,13 @@ def run(
     """Run one scenario and save its time series."""
     from klingel.cli.progress import simulate_with_bar
     from klingel.errors import InputError
-    from klingel.result import COMPLETED, save
+    from klingel.result import COMPLETED, prepare, save
     from klingel.scenario import Scenario
 
     read = Scenario.read(scenario)
     try:
+        for table in prepare(read):
+            typer.echo(table)
         result = simulate_with_bar(read, scenario.stem)
     except InputError as error:  # what only the vehicle at its speed shows to be wrong, such as too little voltage
         raise error if error.file else error.in_file(str(scenario)) from None
@@ -76,6 +78,30 @@ def run(
     typer.echo(f"{outcome}; {result.attrs['realtime_factor']:.1f} times real time; {path}")
     if outcome != COMPLETED:
         raise typer.Exit(1)
+
+
+@app.command()
+def profile(
+    wheel: Annotated[str, typer.Option(help="Wheel profile: a standard name or a file of measured points.")] = "S1002",
+    rail: Annotated[str, typer.Option(help="Rail profile: a standard name or a file of measured points.")] = "60E1",
+    out: Annotated[Path, typer.Option(help="Page (.html) or picture (.png, .svg) to write.", dir_okay=False)] = Path(
+        "profile.html"
+    ),
+    inclination: Annotated[str, typer.Option(help="Of the rails, such as 1:40, 0.025 or 0.")] = "1:40",
+    gauge: Annotated[str, typer.Option(help="14 mm below the top of rail.")] = "1435 mm",
+    flange_back: Annotated[str, typer.Option(help="Distance of the wheels' flange backs.")] = "1360 mm",
+    radius: Annotated[str, typer.Option(help="Of the wheel at its tape circle.")] = "460 mm",
+    load: Annotated[str, typer.Option(help="Vertical force of each wheel.")] = "50 kN",
+    normal: Annotated[str, typer.Option(help="Normal contact: kik_piotrowski or hertz.")] = "kik_piotrowski",
+    units: Annotated[str | None, typer.Option(help="Of the files, m or mm, where they do not say it.")] = None,
+) -> None:
+    """Contact of a wheel on a rail: points, rolling radius difference, conicity, contact angle."""
+    from klingel.cli.profile import draw
+
+    path = draw(
+        wheel, rail, out, inclination, gauge, flange_back, radius, load=load, normal=normal, units=units, say=typer.echo
+    )
+    typer.echo(path)
 
 
 @app.command()

@@ -101,7 +101,7 @@ def report(*assessments: Assessment, title: str = "Curving assessment") -> Repor
     """
     rows = [{name: cell(name, value) for name, value in a.row().items()} for a in assessments]
     shares = [(a.vehicle, name, share) for a in assessments for name, share in a.wheelsets.items()]
-    return Report(_template("assessment.html").render(title=title, rows=rows, headings=HEADINGS, shares=shares))
+    return Report(template("assessment.html").render(title=title, rows=rows, headings=HEADINGS, shares=shares))
 
 
 def study_report(page: StudyPage) -> Report:
@@ -117,7 +117,7 @@ def study_report(page: StudyPage) -> Report:
     claims = paper_claims(summary, page.radius_of_history, page.variants) if len(page.summary) else []
     active = [vehicle for vehicle in page.vehicles if vehicle.drive is not None and vehicle.steering is not None]
     return Report(
-        _template("study.html").render(
+        template("study.html").render(
             page=page,
             claims=claims,
             differing=[c for c in claims if c.verdict in ("differs", "agrees in part")],
@@ -158,7 +158,7 @@ def inline_svg(svg: bytes, name: str) -> str:
     return text.replace("<svg", f'<svg role="img" aria-labelledby="caption-{name}"', 1)
 
 
-def _template(name: str) -> Any:
+def template(name: str) -> Any:
     from jinja2 import DictLoader, Environment, StrictUndefined  # only a report needs it
 
     folder = resources.files(__package__) / "templates"

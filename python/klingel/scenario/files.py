@@ -3,12 +3,15 @@ Everything is checked before a scenario is made; messages name the file."""
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, get_type_hints
 
 from klingel import control, library
+from klingel.contact import CreepOptions, Profile, profile_of
+from klingel.contact.checks import Kind
 from klingel.errors import InputError, Problem, nearest
 from klingel.records import Record, read_toml, validated
 from klingel.scenario.scenario import Scenario, Strategy
@@ -61,7 +64,8 @@ def read(path: str | Path) -> Scenario:
 
     Keys: `vehicle` (a name of the library, or the path of a vehicle file relative to this one), `speed`, one of the
     tables `[track.curve]`, `[[track.segment]]` and the key `track.straight`, `[control]` with `strategy` and its
-    parameters, and every other keyword of Scenario.
+    parameters, `rail` and `wheel` (names of standard profiles or paths of measured ones), `[creep_options]`, and every
+    other keyword of Scenario.
     """
     path = Path(path)
     tables = read_toml(path)
@@ -71,12 +75,41 @@ def read(path: str | Path) -> Scenario:
     if problems:
         raise InputError(problems, file=str(path))
     try:
-        made = {"vehicle": _vehicle(tables["vehicle"], path.parent), "track": _track(tables["track"])}
+        made: dict[str, Any] = {"vehicle": _vehicle(tables["vehicle"], path.parent), "track": _track(tables["track"])}
         if "control" in tables:
             made["control"] = strategy(tables["control"])
+        if "creep_options" in tables:
+            made["creep_options"] = _creep_options(tables["creep_options"])
+        kinds: tuple[Kind, ...] = ("wheel", "rail")
+        made |= {kind: _profile(tables[kind], kind, path.parent) for kind in kinds if kind in tables}
         return Scenario(**{**tables, **made})
     except InputError as error:
         raise error if error.file else error.in_file(str(path)) from None
+
+
+def _creep_options(table: object) -> CreepOptions:
+    known = [field.name for field in dataclasses.fields(CreepOptions)]
+    if not isinstance(table, Mapping):
+        raise InputError.single("creep_options", table, "is no table", remedy="give [creep_options]")
+    unknown = [
+        Problem(f"creep_options.{k}", table[k], "is not a known key", nearest(k, known))
+        for k in table
+        if k not in known
+    ]
+    if unknown:
+        raise InputError(unknown)
+    try:
+        return CreepOptions(**table)
+    except InputError as error:
+        raise error.within("creep_options") from None
+
+
+def _profile(name: object, kind: Kind, folder: Path) -> Profile:
+    """A standard profile by its name, or a measured one by the path of its file, relative to the scenario's."""
+    if not isinstance(name, str):
+        remedy = "give the name of a standard profile or the path of a file"
+        raise InputError.single(kind, name, "is not known", remedy=remedy)
+    return profile_of(name, kind, folder=folder)
 
 
 def strategy(table: object) -> Strategy:

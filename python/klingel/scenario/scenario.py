@@ -10,15 +10,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, Protocol, get_args
 
+from klingel.contact import AS_PUBLISHED, STANDARD, CreepOptions, Profile
+from klingel.contact.checks import Kind, kind_problems
 from klingel.errors import InputError, Problem, nearest
 from klingel.track import Track
 from klingel.units import Quantity, to_si
 from klingel.vehicle import Vehicle
 
-CreepLaw = Literal["fastsim", "polach", "linear"]
-
-RAILS = ("60E1", "UIC60")
-"""Rail profiles known by name."""
+CreepLaw = Literal["fastsim", "polach", "shen_hedrick_elkins", "linear"]
+Contact = Literal["hertz", "kik_piotrowski"]
 
 ELEMENTS_MIN, ELEMENTS_MAX = 2, 40
 """Coarsest and finest FASTSIM grid: elements along, and across, the ellipse."""
@@ -40,9 +40,11 @@ class Scenario:
     """One run: vehicle and track, then keywords; strings carry units, plain numbers are SI.
 
     vehicle: of the library or of a file; track: where it runs; speed: at the start, held by a slow ideal force;
-    control: strategy of `klingel.control`, None for none; friction: coefficient of all contacts; creep_law with
-    creep_elements (along, across) for FASTSIM, whose error against exact theory is smallest (0.036 mu N, 212 cases of
-    CONTACT) at 10 x 10; rail, rail_inclination (slope, positive leans inwards), gauge;
+    control: strategy of `klingel.control`, None for none; friction: coefficient of all contacts; contact: normal
+    contact by `hertz` (an ellipse in every zone of the wheel) or `kik_piotrowski` (not Hertzian), equally fast;
+    creep_law with creep_elements (along, across) for FASTSIM and its creep_options; wheel: profile of all wheels, None
+    for the vehicle's; rail: its profile or the name of a standard one; rail_inclination (slope, positive leans
+    inwards), gauge;
     step: of the integrator; record_interval: of the results; duration: None runs to the end of the track.
     Errors: InputError with every problem.
 
@@ -57,9 +59,12 @@ class Scenario:
     speed: float
     control: Strategy | None
     friction: float
+    contact: Contact
     creep_law: CreepLaw
     creep_elements: tuple[int, int]
-    rail: str
+    creep_options: CreepOptions
+    wheel: Profile | None
+    rail: Profile
     rail_inclination: float
     gauge: float
     step: float
@@ -74,9 +79,12 @@ class Scenario:
         speed: Quantity,
         control: Strategy | None = None,
         friction: Quantity = 0.35,
+        contact: Contact = "hertz",
         creep_law: CreepLaw = "fastsim",
         creep_elements: tuple[int, int] = (10, 10),
-        rail: str = "60E1",
+        creep_options: CreepOptions = AS_PUBLISHED,
+        wheel: Profile | None = None,
+        rail: str | Profile = "60E1",
         rail_inclination: Quantity = 0.025,
         gauge: Quantity = "1435 mm",
         step: Quantity = "0.5 ms",
@@ -89,9 +97,12 @@ class Scenario:
             "speed": to_si(speed, "m/s", key="speed"),
             "control": control,
             "friction": to_si(friction, "1", key="friction"),
+            "contact": contact,
             "creep_law": creep_law,
             "creep_elements": _as_tuple(creep_elements),
-            "rail": rail,
+            "creep_options": creep_options,
+            "wheel": wheel,
+            "rail": STANDARD["rail"][rail]() if isinstance(rail, str) and rail in STANDARD["rail"] else rail,
             "rail_inclination": to_si(rail_inclination, "1", key="rail_inclination"),
             "gauge": to_si(gauge, "m", key="gauge"),
             "step": to_si(step, "s", key="step"),
@@ -153,16 +164,31 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
         yield Problem(
             "rail_inclination", scenario.rail_inclination, "is too steep", "give a slope such as 1/40 = 0.025"
         )
-    if scenario.creep_law not in get_args(CreepLaw):
-        yield Problem("creep_law", scenario.creep_law, "is not known", nearest(scenario.creep_law, get_args(CreepLaw)))
-    if scenario.rail not in RAILS:
-        yield Problem("rail", scenario.rail, "is not known", nearest(scenario.rail, RAILS))
+    for key, choice in (("contact", Contact), ("creep_law", CreepLaw)):
+        value, known = getattr(scenario, key), get_args(choice)
+        if value not in known:
+            yield Problem(key, value, "is not known", nearest(value, known))
+    yield from _profile_problems(scenario)
+    if not isinstance(scenario.creep_options, CreepOptions):
+        yield Problem("creep_options", scenario.creep_options, "are none", "give klingel.contact.CreepOptions")
     if not _is_grid(scenario.creep_elements):
         remedy = f"give two whole numbers from {ELEMENTS_MIN} to {ELEMENTS_MAX}"
         yield Problem("creep_elements", scenario.creep_elements, "is no grid (along, across)", remedy)
     if scenario.step > 0.0:
         yield from _step_problems(scenario)
     yield from _run_problems(scenario)
+
+
+def _profile_problems(scenario: Scenario) -> Iterator[Problem]:
+    """Profiles are profiles, of a wheel and of a rail."""
+    kinds: tuple[tuple[Kind, object], ...] = (("wheel", scenario.wheel), ("rail", scenario.rail))
+    for kind, given in kinds:
+        if isinstance(given, Profile):
+            yield from kind_problems(kind, given.y, given.z)
+        elif kind == "rail" and isinstance(given, str):
+            yield Problem("rail", given, "is not known", nearest(given, list(STANDARD["rail"])))
+        elif given is not None:
+            yield Problem(kind, given, "is no profile", "give a klingel.contact.Profile")
 
 
 def _step_problems(scenario: Scenario) -> Iterator[Problem]:

@@ -160,7 +160,7 @@ def _method(scenario: Scenario, asked: int, made: int) -> dict[str, str]:
         "Curves": "R = 300, 500, 800, 1200, 1800 m at 108, 140, 176, 216, 265 km/h, cant 160 mm, linear ramps of "
         "curvature and cant; R = 500 and 1200 m and the cant are inferred, they reproduce all five speeds of the paper",
         "Track": "smooth and rigid",
-        "Profiles": f"S1002 on {scenario.rail} at 1:{1.0 / scenario.rail_inclination:.0f}, "
+        "Profiles": f"S1002 on {scenario.rail.name} at 1:{1.0 / scenario.rail_inclination:.0f}, "
         f"gauge {1e3 * scenario.gauge:.0f} mm",
         "Contact": f"elastic, tabulated over shift and roll; creep forces by {scenario.creep_law.upper()}, "
         f"{elements} elements, one coefficient of friction, {FRICTION:.2f} in the main runs",

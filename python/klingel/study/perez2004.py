@@ -117,6 +117,7 @@ def run(
         result.save(series, folder / "runs" / f"{name}.nc")
         return Finished(one, assessment, _history(series, one))
 
+    _prepare(runs, console)
     batch = run_all(list(runs), work, result.progress, jobs=jobs, console=console)
     study = _written(folder, runs, batch, started, console)
     if batch.interrupted:
@@ -125,6 +126,14 @@ def run(
         listed = "\n".join(f"  {name}: {reason}" for name, reason in batch.failed.items())
         raise SimulationError(f"{len(batch.failed)} of {len(runs)} runs failed, the rest is in {folder}\n{listed}")
     return study
+
+
+def _prepare(runs: Mapping[str, Run], console: Console) -> None:
+    """Have the contact tables ready before the threads start, and say what that took."""
+    for one in runs.values():
+        for table in result.prepare(one.scenario()):
+            if table.origin != "memory":
+                console.print(f"{one.vehicle}: {table}", highlight=False)
 
 
 def _console() -> Console:

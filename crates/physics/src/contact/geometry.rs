@@ -64,6 +64,14 @@ impl PairGeometry {
         Ok(rail.map(|[y, z, slope]| [y + offset, z - height, slope]))
     }
 
+    /// Place of the highest point of the placed rail, from the tape circle of a centred wheelset to the field side, m.
+    ///
+    /// # Errors
+    /// What [`Self::placed_rail`] refuses.
+    pub fn rail_top(&self) -> Result<f64, ContactError> {
+        self.placed_rail().map(|rail| highest(&rail))
+    }
+
     /// The gap of every wheel point of `strips` above the placed rail, at w = 0; infinite where there is no rail.
     pub(super) fn gaps(rail: &Profile, strips: &Strips, shift: f64, roll: f64) -> Vec<f64> {
         let (sin, cos) = roll.sin_cos();
@@ -85,6 +93,15 @@ impl PairGeometry {
         };
         strips.y.iter().zip(&strips.z).map(gap).collect()
     }
+}
+
+/// Place of the highest point of a rail: where its slope changes sign, between the two samples about it.
+pub(super) fn highest(rail: &Profile) -> f64 {
+    let after = (1..rail.y.len()).find(|&i| rail.slope[i] >= 0.0 && rail.slope[i - 1] < 0.0);
+    after.map_or(rail.y[0], |i| {
+        let t = rail.slope[i - 1] / (rail.slope[i - 1] - rail.slope[i]);
+        rail.y[i - 1] + t * (rail.y[i] - rail.y[i - 1])
+    })
 }
 
 fn check(what: &str, value: f64, [least, most]: [f64; 2], remedy: &str) -> Result<(), ContactError> {

@@ -15,7 +15,7 @@ pub struct Ellipse {
 }
 
 /// Complete elliptic integrals K and E of modulus k, by the arithmetic-geometric mean.
-fn elliptic(k2: f64) -> (f64, f64) {
+pub(super) fn elliptic(k2: f64) -> (f64, f64) {
     let (mut a, mut b, mut c2, mut power, mut sum) = (1.0, (1.0 - k2).sqrt(), k2, 0.5, 0.5 * k2);
     while c2 > 1e-32 {
         (a, b, c2) = (0.5 * (a + b), (a * b).sqrt(), (0.5 * (a - b)).powi(2));

@@ -1,24 +1,34 @@
 //! Wheel-rail contact: profile -> geometry of the pair -> elastic normal contact (tables) -> creep forces.
 //! Everything is written for the right wheel; the left one is its mirror image (y -> -y, roll -> -roll).
 
+mod build;
+mod bytes;
 pub mod creep;
 pub mod geometry;
 pub mod hertz;
+mod influence;
+mod level;
+pub mod loaded;
 mod normal;
+mod penetration;
 mod points;
 pub mod profile;
+pub mod rigid;
 mod spline;
 pub mod table;
 #[cfg(test)]
 mod tests;
-pub mod wheelset;
+mod view;
 pub mod zones;
 
 pub use creep::{CreepForce, CreepLaw, RollingContact};
 pub use geometry::PairGeometry;
+pub use loaded::LoadedState;
+pub use normal::{NormalContact, PatchDetail};
 pub use profile::Profile;
+pub use rigid::{RigidContact, RigidState, RigidWheelset};
 pub use table::{ContactTable, OutsideTable, Patch};
-pub use wheelset::{LoadedState, RigidContact, RigidState, RigidWheelset};
+pub use view::{ContactPoint, WheelsetContact};
 pub use zones::Zone;
 
 /// What a profile, a pair or a table can be refused for.
@@ -36,13 +46,10 @@ pub enum ContactError {
     WrongUnits { what: String, width: f64 },
     #[error("{what}: {value} is outside {least} to {most}; {remedy}")]
     OutOfRange { what: String, value: f64, least: f64, most: f64, remedy: String },
-    #[error(
-        "exact creep force at the scaled creepages {creepage:?}: residual {residual} after {steps} steps; \
-         start from a solution nearby, or take fewer elements"
-    )]
-    NoConvergence { creepage: [f64; 3], steps: usize, residual: f64 },
     #[error("wheel and rail never meet at a shift of {shift} m and a roll of {roll} rad; check profiles and gauge")]
     NoContact { shift: f64, roll: f64 },
+    #[error(transparent)]
+    OutsideTable(#[from] OutsideTable),
 }
 
 /// Elastic constants of wheel and rail, which are taken as equal.

@@ -96,6 +96,19 @@ pub(super) fn plane_slopes<const K: usize>(nodes: &[f64], axes: &[Axis; 2], x: [
     (value, core::array::from_fn(|k| [du[k], dv[k]]))
 }
 
+/// K values over three axes, the last one fastest.
+pub(super) fn space_plain<const K: usize>(nodes: &[f64], axes: &[Axis; 3], x: [f64; 3]) -> [f64; K] {
+    let (u, v, t) = (axes[0].stencil(x[0]), axes[1].stencil(x[1]), axes[2].stencil(x[2]));
+    let (step, stride) = (axes[2].len * K, axes[1].len * axes[2].len * K);
+    let mut sum = [0.0; K];
+    for (i, w) in t.weight.iter().enumerate() {
+        let first = u.first * stride + v.first * step + (t.first + i) * K;
+        let row: [f64; K] = rows(nodes, first, stride, step, &u.weight, &v.weight);
+        sum.iter_mut().zip(row).for_each(|(s, r)| *s += w * r);
+    }
+    sum
+}
+
 /// Six values over three axes, the last one fastest.
 #[inline]
 pub(super) fn space(nodes: &[f64], axes: &[Axis; 3], x: [f64; 3]) -> [f64; 6] {

@@ -33,6 +33,8 @@ const TABLE: [(f64, [[f64; 3]; 3], f64); 19] = [
 /// The smooth curves reach from a/b = 1/LIMIT to LIMIT; beyond, the asymptotes are evaluated directly.
 const LIMIT: f64 = 1e3;
 const INTERVALS: usize = 256;
+/// Step of numerical slopes over ln(a/b).
+const STEP: f64 = 1e-5;
 
 /// The coefficients of one material as smooth functions of a/b.
 ///
@@ -43,24 +45,28 @@ const INTERVALS: usize = 256;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Kalker {
-    poisson: f64,
-    /// [C, dC/d ln(a/b)] at evenly spaced ln(a/b).
-    nodes: Vec<[[f64; 2]; 4]>,
+    curves: Curves,
+    /// Of each interval of ln(a/b): the four cubics, constant term first, in 0 to 1.
+    cubics: Vec<[[f64; 4]; 4]>,
 }
 
 impl Kalker {
     /// The coefficients for Poisson's ratio `poisson` (0 to 0.5): 1/C is quadratic in it, as in CONTACT.
     pub fn new(poisson: f64) -> Self {
-        let curve = |x: f64| coefficients(poisson, x);
-        let (step, h) = (2.0 * LIMIT.ln() / INTERVALS as f64, 1e-5);
-        let nodes = (0..=INTERVALS)
-            .map(|i| {
-                let x = i as f64 * step - LIMIT.ln();
-                let (c, up, down) = (curve(x), curve(x + h), curve(x - h));
-                [0, 1, 2, 3].map(|k| [c[k], (up[k] - down[k]) / (2.0 * h)])
+        let curves = Curves::new(poisson);
+        let place = |i: usize| (2.0 * i as f64 / INTERVALS as f64 - 1.0) * LIMIT.ln();
+        let nodes: Vec<_> = (0..=INTERVALS).map(|i| curves.value_and_slope(place(i))).collect();
+        let cubics = nodes
+            .windows(2)
+            .map(|pair| {
+                let ((lo, from), (hi, to)) = (pair[0], pair[1]);
+                core::array::from_fn(|k| {
+                    let (rise, s0, s1) = (hi[k] - lo[k], from[k] * interval(), to[k] * interval());
+                    [lo[k], s0, 3.0 * rise - 2.0 * s0 - s1, s0 + s1 - 2.0 * rise]
+                })
             })
             .collect();
-        Self { poisson, nodes }
+        Self { curves, cubics }
     }
 
     /// [C11, C22, C23, C33] for semi-axes with the ratio a/b.
@@ -68,45 +74,100 @@ impl Kalker {
     pub fn at<S: Scalar>(&self, a_over_b: S) -> [S; 4] {
         S::lift_n_lazy(
             [a_over_b],
-            |[g]| self.read(g).map(|c| c[0]),
+            |[g]| self.read(g).0,
             |[g]| {
-                let c = self.read(g);
-                (c.map(|c| c[0]), c.map(|c| [c[1]]))
+                let (values, slopes) = self.read(g);
+                (values, slopes.map(|slope| [slope]))
             },
         )
     }
 
-    /// [C, dC/d(a/b)] of the four coefficients.
+    /// C and dC/d(a/b) of the four coefficients.
     #[inline]
-    fn read(&self, g: f64) -> [[f64; 2]; 4] {
+    fn read(&self, g: f64) -> ([f64; 4], [f64; 4]) {
         let x = g.ln();
-        let place = (x / LIMIT.ln() + 1.0) * 0.5 * INTERVALS as f64;
+        let place = (x / LIMIT.ln() + 1.0) * (0.5 * INTERVALS as f64);
         if !(place >= 0.0 && place < INTERVALS as f64) {
-            let (c, up, down) = (
-                coefficients(self.poisson, x),
-                coefficients(self.poisson, x + 1e-5),
-                coefficients(self.poisson, x - 1e-5),
-            );
-            return [0, 1, 2, 3].map(|k| [c[k], (up[k] - down[k]) / 2e-5 / g]);
+            let (c, slope) = self.curves.value_and_slope(x);
+            return (c, slope.map(|s| s / g));
         }
-        let k = place as usize;
-        let (t, h) = (place - k as f64, 2.0 * LIMIT.ln() / INTERVALS as f64);
-        let (lo, hi) = (&self.nodes[k], &self.nodes[k + 1]);
-        [0, 1, 2, 3].map(|i| {
-            let (value, slope) = hermite(t, h, lo[i], hi[i]);
-            [value, slope / g]
-        })
+        let cubics = &self.cubics[place as usize];
+        let (t, scale) = (place.fract(), 1.0 / (interval() * g));
+        (
+            cubics.map(|[c0, c1, c2, c3]| c0 + t * (c1 + t * (c2 + t * c3))),
+            cubics.map(|[_, c1, c2, c3]| (c1 + t * (2.0 * c2 + t * 3.0 * c3)) * scale),
+        )
     }
 }
 
-/// Cubic through two (value, slope) pairs a distance `h` apart: value and slope at t = 0..1.
-fn hermite(t: f64, h: f64, lo: [f64; 2], hi: [f64; 2]) -> (f64, f64) {
-    let chord = (hi[0] - lo[0]) / h;
-    let (m0, m1) = (lo[1] - chord, hi[1] - chord);
-    (
-        lo[0] + t * h * (chord + (1.0 - t) * (m0 * (1.0 - t) - m1 * t)),
-        chord + m0 * (1.0 - t) * (1.0 - 3.0 * t) + m1 * t * (3.0 * t - 2.0),
-    )
+/// Width of an interval of ln(a/b).
+fn interval() -> f64 {
+    2.0 * LIMIT.ln() / INTERVALS as f64
+}
+
+/// The table at one Poisson's ratio: ln(a/b), the four ln C and their slopes over ln(a/b).
+#[derive(Clone, Debug)]
+struct Curves {
+    poisson: f64,
+    x: Vec<f64>,
+    c: Vec<[f64; 4]>,
+    slope: Vec<[f64; 4]>,
+    /// At the first and the last row: ln(C / asymptote) and its slope over the distance from there.
+    joints: [[[f64; 2]; 4]; 2],
+}
+
+impl Curves {
+    fn new(poisson: f64) -> Self {
+        let (x, c): (Vec<f64>, Vec<[f64; 4]>) = (0..TABLE.len()).map(|i| row(i, poisson)).unzip();
+        let slope: Vec<[f64; 4]> =
+            (0..x.len()).map(|i| core::array::from_fn(|k| parabola_slope(&x, |j| c[j][k], i))).collect();
+        let joints = [0, x.len() - 1].map(|end| {
+            let at = |x: f64| asymptotes(poisson, x);
+            let (joint, up, down) = (at(x[end]), at(x[end] + STEP), at(x[end] - STEP));
+            core::array::from_fn(|k| {
+                let rise = slope[end][k] - (up[k] / down[k]).ln() / (2.0 * STEP);
+                [c[end][k] - joint[k].ln(), rise * x[end].signum()]
+            })
+        });
+        Self { poisson, x, c, slope, joints }
+    }
+
+    /// The four coefficients at x = ln(a/b) and their slopes over x.
+    fn value_and_slope(&self, x: f64) -> ([f64; 4], [f64; 4]) {
+        let (c, up, down) = (self.at(x), self.at(x + STEP), self.at(x - STEP));
+        (c, core::array::from_fn(|k| (up[k] - down[k]) / (2.0 * STEP)))
+    }
+
+    /// The four coefficients at x = ln(a/b): cubic in ln C within the table, asymptotes joined to it outside.
+    fn at(&self, x: f64) -> [f64; 4] {
+        let last = self.x.len() - 1;
+        if x < self.x[0] || x > self.x[last] {
+            return self.beyond(x);
+        }
+        let k = self.x.partition_point(|&row| row <= x).clamp(1, last) - 1;
+        let h = self.x[k + 1] - self.x[k];
+        let t = (x - self.x[k]) / h;
+        core::array::from_fn(|i| {
+            let (rise, s0, s1) = (self.c[k + 1][i] - self.c[k][i], self.slope[k][i] * h, self.slope[k + 1][i] * h);
+            let (c2, c3) = (3.0 * rise - 2.0 * s0 - s1, s0 + s1 - 2.0 * rise);
+            (self.c[k][i] + t * (s0 + t * (c2 + t * c3))).exp()
+        })
+    }
+
+    /// The asymptote times a correction that continues value and slope of the table's end and fades beyond it.
+    ///
+    /// With t the distance to the end in ln(a/b): ln(C / asymptote) = (d + (d' + r d) t) exp(-r t). Rates r of 2 below and
+    /// of 1 above: the correction goes with (a/b)^2 and with b/a, about as the table itself nears its asymptotes.
+    fn beyond(&self, x: f64) -> [f64; 4] {
+        let (rate, end, joint) =
+            if x < 0.0 { (2.0, self.x[0], &self.joints[0]) } else { (1.0, self.x[self.x.len() - 1], &self.joints[1]) };
+        let (asymptote, t) = (asymptotes(self.poisson, x), (x - end).abs());
+        let fade = (-rate * t).exp();
+        core::array::from_fn(|k| {
+            let [d, slope] = joint[k];
+            asymptote[k] * ((d + (slope + rate * d) * t) * fade).exp()
+        })
+    }
 }
 
 /// The table's row `i` at Poisson's ratio `nu`, as logarithms: ln(a/b) and the four ln C.
@@ -120,30 +181,13 @@ fn row(i: usize, nu: f64) -> (f64, [f64; 4]) {
     (f64::ln(ratio), [quadratic(c[0]), quadratic(c[1]), quadratic(c[2]), c33.ln()])
 }
 
-/// Slope of ln C over ln(a/b) at row `i` by the parabola through it and its neighbours.
-fn row_slope(i: usize, nu: f64) -> [f64; 4] {
-    let i = i.clamp(1, TABLE.len() - 2);
-    let ((x0, f0), (x1, f1), (x2, f2)) = (row(i - 1, nu), row(i, nu), row(i + 1, nu));
-    [0, 1, 2, 3].map(|k| {
-        let (left, right) = ((f1[k] - f0[k]) / (x1 - x0), (f2[k] - f1[k]) / (x2 - x1));
-        (left * (x2 - x1) + right * (x1 - x0)) / (x2 - x0)
-    })
-}
-
-/// The four coefficients at x = ln(a/b): cubic in ln C within the table, asymptotes joined to it outside.
-fn coefficients(nu: f64, x: f64) -> [f64; 4] {
-    let last = TABLE.len() - 1;
-    let k = (0..last).rev().find(|&i| row(i, nu).0 <= x).unwrap_or(0);
-    let (lo, hi) = (row(k, nu), row(k + 1, nu));
-    if x >= row(0, nu).0 && x <= row(last, nu).0 {
-        let (s0, s1, h) = (row_slope(k, nu), row_slope(k + 1, nu), hi.0 - lo.0);
-        return [0, 1, 2, 3].map(|i| hermite((x - lo.0) / h, h, [lo.1[i], s0[i]], [hi.1[i], s1[i]]).0.exp());
-    }
-    let (x0, c0) = row(if x < 0.0 { 0 } else { last }, nu);
-    let (asymptote, joint) = (asymptotes(nu, x), asymptotes(nu, x0));
-    // The last row is off its asymptote by a few percent; the ratio of the two tends to one as the square root of b/a or a/b.
-    let fade = (-0.5 * (x - x0).abs()).exp();
-    [0, 1, 2, 3].map(|i| asymptote[i] * ((c0[i] - joint[i].ln()) * fade).exp())
+/// Slope at point `i` of the parabola through it and its neighbours (through the first or last three at an end).
+fn parabola_slope(x: &[f64], f: impl Fn(usize) -> f64, i: usize) -> f64 {
+    let m = i.clamp(1, x.len() - 2);
+    let left = (f(m) - f(m - 1)) / (x[m] - x[m - 1]);
+    let right = (f(m + 1) - f(m)) / (x[m + 1] - x[m]);
+    let curvature = (right - left) / (x[m + 1] - x[m - 1]);
+    left + curvature * (2.0 * x[i] - x[m - 1] - x[m])
 }
 
 /// Kalker's asymptotes for slender ellipses; C33 levels off near 0.5 in its last rows and is taken to stay there.

@@ -1,20 +1,29 @@
-//! Creep forces of one elliptic contact patch: linear, Polach, FASTSIM, chosen by `CreepLaw`.
+//! Creep forces of one elliptic contact patch, chosen by `CreepLaw`: from the linear theory to FASTSIM.
 //! Creepages of the wheel over the rail; a positive creepage gives a negative force on the wheel.
 
+#[cfg(test)]
+mod accuracy;
+mod error;
 mod exact;
 mod fastsim;
+mod flexibility;
 mod kalker;
 mod linear;
+mod options;
 mod polach;
+mod shen;
 #[cfg(test)]
 mod tests;
 
+pub use error::CreepError;
 pub use exact::{Exact, ExactSolution, exact_force};
 pub use fastsim::MOST_ELEMENTS;
 pub use kalker::Kalker;
+pub use options::{CreepOptions, FallingFriction, PolachReduction, SlopeReduction};
 
-use super::{ContactError, Material};
+use super::Material;
 use crate::{Dual, Scalar};
+use error::out_of_range;
 use fastsim::{Grid, Strip};
 
 /// How creep forces are computed.
@@ -22,10 +31,33 @@ use fastsim::{Grid, Strip};
 pub enum CreepLaw {
     /// Kalker's linear theory, without a friction limit.
     Linear,
+    /// Shen, Hedrick and Elkins: the linear force under a friction limit, for little spin; gives no moment.
+    ShenHedrickElkins,
     /// Polach's closed form; gives no moment.
     Polach,
     /// Kalker's simplified theory with `nx` elements along each of `ny` strips.
     Fastsim { nx: usize, ny: usize },
+}
+
+impl CreepLaw {
+    /// The names that `named` knows.
+    pub const NAMES: [&'static str; 4] = ["linear", "shen_hedrick_elkins", "polach", "fastsim"];
+
+    /// The law of a name; `nx` and `ny` are for those that divide the patch.
+    pub fn named(name: &str, [nx, ny]: [usize; 2]) -> Option<Self> {
+        let laws = [Self::Linear, Self::ShenHedrickElkins, Self::Polach, Self::Fastsim { nx, ny }];
+        laws.into_iter().find(|law| law.name() == name)
+    }
+
+    /// The name, as in files and in Python.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::ShenHedrickElkins => "shen_hedrick_elkins",
+            Self::Polach => "polach",
+            Self::Fastsim { .. } => "fastsim",
+        }
+    }
 }
 
 impl Default for CreepLaw {
@@ -63,29 +95,37 @@ pub struct RollingContact<S> {
 #[derive(Clone, Debug)]
 pub struct CreepForce {
     law: CreepLaw,
+    options: CreepOptions,
     shear_modulus: f64,
     kalker: Kalker,
     grid: Grid,
 }
 
 impl CreepForce {
+    /// The law as published, without options.
+    ///
     /// # Errors
     /// No elements or more than `MOST_ELEMENTS` either way; Poisson's ratio outside 0 to 0.5.
-    pub fn new(law: CreepLaw, material: &Material) -> Result<Self, ContactError> {
-        let refuse = |what: &str, value: f64, least: f64, most: f64, remedy: &str| {
-            Err(ContactError::OutOfRange { what: what.into(), value, least, most, remedy: remedy.into() })
-        };
+    pub fn new(law: CreepLaw, material: &Material) -> Result<Self, CreepError> {
+        Self::with_options(law, CreepOptions::default(), material)
+    }
+
+    /// The law with its options.
+    ///
+    /// # Errors
+    /// Those of `new`; options of another law or out of their range.
+    pub fn with_options(law: CreepLaw, options: CreepOptions, material: &Material) -> Result<Self, CreepError> {
+        options.check(law)?;
         if !(0.0..=0.5).contains(&material.poisson) {
-            return refuse("Poisson's ratio", material.poisson, 0.0, 0.5, "steel has 0.28");
+            return Err(out_of_range("Poisson's ratio", material.poisson, [0.0, 0.5], "steel has 0.28"));
         }
         let (nx, ny) = if let CreepLaw::Fastsim { nx, ny } = law { (nx, ny) } else { (1, 1) };
-        for n in [nx, ny] {
-            if n == 0 || n > MOST_ELEMENTS {
-                return refuse("number of FASTSIM elements", n as f64, 1.0, MOST_ELEMENTS as f64, "16 x 16 is usual");
-            }
+        let most = MOST_ELEMENTS as f64;
+        if let Some(&n) = [nx, ny].iter().find(|&&n| n == 0 || n > MOST_ELEMENTS) {
+            return Err(out_of_range("number of FASTSIM elements", n as f64, [1.0, most], "16 x 16 is usual"));
         }
         let (kalker, grid) = (Kalker::new(material.poisson), Grid::new(nx, ny));
-        Ok(Self { law, shear_modulus: material.shear_modulus(), kalker, grid })
+        Ok(Self { law, options, shear_modulus: material.shear_modulus(), kalker, grid })
     }
 
     /// [Fx, Fy, Mz] on the wheel, N and N m, in the axes of the contact plane (x forward, y right, z down).
@@ -103,10 +143,19 @@ impl CreepForce {
 
     fn evaluate<T: Strip>(&self, [a, b, normal_force, friction, xi, eta, phi]: [T; 7]) -> [T; 3] {
         let c = RollingContact { a, b, normal_force, friction, xi, eta, phi };
+        let (kalker, g) = (&self.kalker, self.shear_modulus);
         match self.law {
-            CreepLaw::Linear => linear::linear(&self.kalker, self.shear_modulus, &c),
-            CreepLaw::Polach => polach::polach(&self.kalker, self.shear_modulus, &c),
-            CreepLaw::Fastsim { .. } => fastsim::fastsim(&self.kalker, self.shear_modulus, &self.grid, &c),
+            CreepLaw::Linear => linear::linear(kalker, g, &c),
+            CreepLaw::ShenHedrickElkins => shen::shen_hedrick_elkins(kalker, g, &c),
+            CreepLaw::Polach => {
+                let full = PolachReduction { adhesion: 1.0, slip: 1.0 };
+                polach::polach(kalker, g, self.options.reduction.unwrap_or(full), &c)
+            }
+            CreepLaw::Fastsim { .. } => {
+                let (bound, CreepOptions { slope, blended, .. }) = (fastsim::bound(&c), self.options);
+                let stiffness = flexibility::stiffness(kalker, g, slope, blended, &c, bound);
+                fastsim::fastsim(&self.grid, &stiffness, bound, &c)
+            }
         }
     }
 }

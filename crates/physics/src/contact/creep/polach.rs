@@ -1,7 +1,7 @@
 //! Polach's closed-form law with spin (Vehicle System Dynamics Supplement 33, 1999, 728-739): fast, no moment.
-//! The bracket of the spin force tends to Kalker's C23 for pure spin.
+//! The bracket of the spin force tends to Kalker's C23 for pure spin; kA and kS are those of Wear 258 (2005) 992-1000.
 
-use super::{Kalker, RollingContact};
+use super::{Kalker, PolachReduction, RollingContact};
 use crate::{Mask, Scalar};
 use core::f64::consts::PI;
 
@@ -10,17 +10,36 @@ const LEAST_CREEPAGE: f64 = 1e-12;
 /// Friction limit of a patch without load, N: it keeps the quotients finite.
 const LEAST_LIMIT: f64 = 1e-9;
 
-pub(super) fn polach<S: Scalar>(kalker: &Kalker, shear_modulus: f64, c: &RollingContact<S>) -> [S; 3] {
-    let [c11, c22, c23, _] = kalker.at(c.a / c.b);
-    let limit = (c.friction * c.normal_force).max(S::constant(LEAST_LIMIT));
-    // Spin moves the lateral slip of the patch's front; it counts where it makes the slip larger.
+/// The friction limit mu N.
+pub(super) fn limit<S: Scalar>(c: &RollingContact<S>) -> S {
+    (c.friction * c.normal_force).max(S::constant(LEAST_LIMIT))
+}
+
+/// Size of the lateral slip: spin moves that of the patch's front; it counts where it makes the slip larger.
+fn lateral_slip<S: Scalar>(c: &RollingContact<S>) -> S {
     let with_spin = c.eta + c.phi * c.a;
-    let lateral = S::select(c.eta.abs().lt(with_spin.abs()), with_spin, c.eta).abs();
-    let least = LEAST_CREEPAGE * LEAST_CREEPAGE;
-    let slip = (c.xi.square() + lateral.square() + least).sqrt();
-    let stiffness = ((c11 * c.xi).square() + c22.square() * (lateral.square() + least)).sqrt();
-    let epsilon = c.a * c.b * stiffness * (0.25 * PI * shear_modulus) / limit;
-    let force = limit * (epsilon / (epsilon.square() + 1.0) + epsilon.atan()) * (2.0 / PI);
+    S::select(c.eta.abs().lt(with_spin.abs()), with_spin, c.eta).abs()
+}
+
+/// Gradient of the tangential stress: eps = G pi a b c s / (4 mu N), c the mean of C11 and C22 in the direction of s.
+pub(super) fn gradient<S: Scalar>([c11, c22]: [S; 2], shear_modulus: f64, c: &RollingContact<S>) -> S {
+    let lateral = lateral_slip(c).square() + LEAST_CREEPAGE * LEAST_CREEPAGE;
+    let stiffness = ((c11 * c.xi).square() + c22.square() * lateral).sqrt();
+    c.a * c.b * stiffness * (0.25 * PI * shear_modulus) / limit(c)
+}
+
+pub(super) fn polach<S: Scalar>(
+    kalker: &Kalker,
+    shear_modulus: f64,
+    reduction: PolachReduction,
+    c: &RollingContact<S>,
+) -> [S; 3] {
+    let [c11, c22, c23, _] = kalker.at(c.a / c.b);
+    let (limit, lateral) = (limit(c), lateral_slip(c));
+    let slip = (c.xi.square() + lateral.square() + LEAST_CREEPAGE * LEAST_CREEPAGE).sqrt();
+    let epsilon = gradient([c11, c22], shear_modulus, c);
+    let adhesion = epsilon * reduction.adhesion;
+    let force = limit * (adhesion / (adhesion.square() + 1.0) + (epsilon * reduction.slip).atan()) * (2.0 / PI);
 
     let widening = (S::one() - (-(c.a / c.b)).exp()) * 6.3 + 1.0;
     let area = c.a * c.b;

@@ -10,8 +10,9 @@ mod products;
 #[cfg(test)]
 mod tests;
 
-use super::RollingContact;
-use crate::contact::{ContactError, Material};
+use super::error::out_of_range;
+use super::{CreepError, RollingContact};
+use crate::contact::Material;
 use grid::Grid;
 use newton::{Found, TOLERANCE};
 use rayon::prelude::*;
@@ -64,12 +65,11 @@ impl Exact {
     ///
     /// # Errors
     /// A ratio outside `RATIOS`, Poisson's ratio outside 0 to 0.5, a number of elements outside `ELEMENTS`.
-    pub fn new(ratio: f64, poisson: f64, elements: [usize; 2]) -> Result<Self, ContactError> {
-        let [few, many] = ELEMENTS.map(|n| n as f64);
-        check("ratio of the semi-axes a/b", ratio, RATIOS[0], RATIOS[1], "slender patches are line contacts")?;
-        check("Poisson's ratio", poisson, 0.0, 0.5, "steel has 0.28")?;
+    pub fn new(ratio: f64, poisson: f64, elements: [usize; 2]) -> Result<Self, CreepError> {
+        check("ratio of the semi-axes a/b", ratio, RATIOS, "slender patches are line contacts")?;
+        check("Poisson's ratio", poisson, [0.0, 0.5], "steel has 0.28")?;
         for n in elements {
-            check("number of elements", n as f64, few, many, "40 x 40 is usual")?;
+            check("number of elements", n as f64, ELEMENTS.map(|n| n as f64), "40 x 40 is usual")?;
         }
         Ok(Self::divided(ratio, poisson, elements))
     }
@@ -84,7 +84,7 @@ impl Exact {
     ///
     /// # Errors
     /// A creepage that is not finite; no convergence, which has not been seen.
-    pub fn solve(&self, creepage: [f64; 3]) -> Result<ExactSolution, ContactError> {
+    pub fn solve(&self, creepage: [f64; 3]) -> Result<ExactSolution, CreepError> {
         self.solve_from(creepage, None)
     }
 
@@ -92,15 +92,15 @@ impl Exact {
     ///
     /// # Errors
     /// As `solve`.
-    pub fn solve_from(&self, creepage: [f64; 3], start: Option<&ExactSolution>) -> Result<ExactSolution, ContactError> {
+    pub fn solve_from(&self, creepage: [f64; 3], start: Option<&ExactSolution>) -> Result<ExactSolution, CreepError> {
         for (what, c) in ["longitudinal creepage", "lateral creepage", "spin"].into_iter().zip(creepage) {
-            check(what, c, f64::MIN, f64::MAX, "creepages are finite numbers")?;
+            check(what, c, [f64::MIN, f64::MAX], "creepages are finite numbers")?;
         }
         let n = self.grid.size();
         let start = start.map(|s| &s.tractions).filter(|t| t.len() == 2 * n);
         let found = self.tractions(creepage, start);
         if found.residual > TOLERANCE || found.residual.is_nan() {
-            return Err(ContactError::NoConvergence { creepage, steps: found.steps, residual: found.residual });
+            return Err(CreepError::NoConvergence { creepage, steps: found.steps, residual: found.residual });
         }
         Ok(ExactSolution {
             force: self.resultant(&found.tractions),
@@ -147,7 +147,7 @@ impl Exact {
     ///
     /// # Errors
     /// As `solve`, for the first creepage that fails.
-    pub fn forces(&self, creepages: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, ContactError> {
+    pub fn forces(&self, creepages: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, CreepError> {
         creepages.par_iter().map(|&c| self.solve(c).map(|found| found.force)).collect()
     }
 
@@ -184,15 +184,11 @@ impl Exact {
 ///
 /// # Errors
 /// As `Exact::new` and `Exact::solve`; a negative load or friction coefficient.
-pub fn exact_force(
-    c: &RollingContact<f64>,
-    material: &Material,
-    elements: [usize; 2],
-) -> Result<[f64; 3], ContactError> {
-    check("semi-axis a", c.a, f64::MIN_POSITIVE, f64::MAX, "it is a length in metres")?;
-    check("semi-axis b", c.b, f64::MIN_POSITIVE, f64::MAX, "it is a length in metres")?;
-    check("normal force", c.normal_force, 0.0, f64::MAX, "a wheel only presses")?;
-    check("friction coefficient", c.friction, 0.0, f64::MAX, "dry rails have 0.3 to 0.5")?;
+pub fn exact_force(c: &RollingContact<f64>, material: &Material, elements: [usize; 2]) -> Result<[f64; 3], CreepError> {
+    check("semi-axis a", c.a, [f64::MIN_POSITIVE, f64::MAX], "it is a length in metres")?;
+    check("semi-axis b", c.b, [f64::MIN_POSITIVE, f64::MAX], "it is a length in metres")?;
+    check("normal force", c.normal_force, [0.0, f64::MAX], "a wheel only presses")?;
+    check("friction coefficient", c.friction, [0.0, f64::MAX], "dry rails have 0.3 to 0.5")?;
     let ellipse = Exact::new(c.a / c.b, material.poisson, elements)?;
     let (limit, mean) = (c.friction * c.normal_force, (c.a * c.b).sqrt());
     if limit == 0.0 {
@@ -203,9 +199,6 @@ pub fn exact_force(
     Ok([fx * limit, fy * limit, mz * limit * mean])
 }
 
-fn check(what: &str, value: f64, least: f64, most: f64, remedy: &str) -> Result<(), ContactError> {
-    if (least..=most).contains(&value) {
-        return Ok(());
-    }
-    Err(ContactError::OutOfRange { what: what.into(), value, least, most, remedy: remedy.into() })
+fn check(what: &str, value: f64, range: [f64; 2], remedy: &str) -> Result<(), CreepError> {
+    if (range[0]..=range[1]).contains(&value) { Ok(()) } else { Err(out_of_range(what, value, range, remedy)) }
 }

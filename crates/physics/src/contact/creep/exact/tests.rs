@@ -170,7 +170,7 @@ fn one_contact_in_its_own_units() {
 
 #[test]
 fn what_makes_no_contact_is_refused_in_plain_words() {
-    let refused = |result: Result<Exact, ContactError>| result.unwrap_err().to_string();
+    let refused = |result: Result<Exact, CreepError>| result.unwrap_err().to_string();
     assert!(refused(Exact::new(0.0, 0.28, [8, 8])).contains("a/b: 0 is outside"));
     assert!(refused(Exact::new(f64::NAN, 0.28, [8, 8])).contains("a/b: NaN"));
     assert!(refused(Exact::new(1.0, 0.6, [8, 8])).contains("Poisson's ratio: 0.6"));

@@ -1,0 +1,131 @@
+//! Force elements and drives of a spec as the laws of `klingel_physics`, their states in order.
+//! Every number is checked here; a message names the element.
+
+use super::{Compiler, positive, value};
+use crate::error::EngineError;
+use crate::model::{ActuatorIn, Drive, Hold, MaxwellIn};
+use klingel_physics::drives::{self, Actuator};
+use klingel_physics::elements::{BlowOff, Bushing, Maxwell, Stop};
+
+impl Compiler<'_> {
+    pub(super) fn bushings(&mut self) -> Result<Vec<(usize, Bushing)>, EngineError> {
+        let mut bushings = Vec::new();
+        for b in &self.spec.bushings {
+            let law = Bushing {
+                stiffness: b.stiffness,
+                damping: b.damping,
+                rotational_stiffness: b.rotational_stiffness,
+                rotational_damping: b.rotational_damping,
+                preload: b.preload,
+            };
+            for x in b.stiffness.iter().chain(&b.damping).chain(&b.rotational_stiffness).chain(&b.rotational_damping) {
+                if !(*x >= 0.0 && x.is_finite()) {
+                    return Err(value(&b.name, x, "stiffness and damping must be zero or positive"));
+                }
+            }
+            let joint = self.joint(&b.name, &b.joint)?;
+            self.joints[joint].turns |= law.turns();
+            bushings.push((joint, law));
+        }
+        Ok(bushings)
+    }
+
+    pub(super) fn maxwells(&mut self) -> Result<Vec<MaxwellIn>, EngineError> {
+        let mut maxwells = Vec::new();
+        for e in &self.spec.maxwells {
+            let law = Maxwell {
+                stiffness: positive(&e.name, "stiffness", e.stiffness)?,
+                damping: positive(&e.name, "damping", e.damping)?,
+                blow_off: match &e.blow_off {
+                    None => None,
+                    Some(b) => Some(BlowOff {
+                        force: positive(&e.name, "blow_off.force", b.force)?,
+                        damping: positive(&e.name, "blow_off.damping", b.damping)?,
+                    }),
+                },
+            };
+            let joint = self.joint(&e.name, &e.joint)?;
+            let state = self.states.add(format!("{}.force", e.name), law.pole());
+            maxwells.push(MaxwellIn { name: e.name.clone(), joint, axis: e.axis.index(), law, state });
+        }
+        Ok(maxwells)
+    }
+
+    pub(super) fn stops(&mut self) -> Result<Vec<(usize, usize, Stop)>, EngineError> {
+        let mut stops = Vec::new();
+        for s in &self.spec.stops {
+            let law = Stop::new(&s.deflection, &s.force)
+                .map_err(|source| EngineError::Stop { name: s.name.clone(), source })?;
+            stops.push((self.joint(&s.name, &s.joint)?, s.axis.index(), law));
+        }
+        Ok(stops)
+    }
+
+    pub(super) fn actuators(&mut self, inputs: &mut Vec<f64>) -> Result<Vec<ActuatorIn>, EngineError> {
+        let mut actuators = Vec::new();
+        for a in &self.spec.actuators {
+            let law = Actuator {
+                natural_frequency: positive(&a.name, "natural_frequency", a.natural_frequency)?,
+                damping_ratio: positive(&a.name, "damping_ratio", a.damping_ratio)?,
+                force_max: positive(&a.name, "force_max", a.force_max)?,
+                rate_max: positive(&a.name, "rate_max", a.rate_max)?,
+                stroke: positive(&a.name, "stroke", a.stroke)?,
+                stop_stiffness: positive(&a.name, "stop_stiffness", a.stop_stiffness)?,
+            };
+            let joint = self.joint(&a.name, &a.joint)?;
+            let state = self.states.add(format!("{}.force", a.name), 0.0);
+            self.states.add(format!("{}.force_rate", a.name), 0.0);
+            inputs.push(0.0);
+            actuators.push(ActuatorIn { name: a.name.clone(), joint, law, state, input: inputs.len() - 1 });
+        }
+        Ok(actuators)
+    }
+
+    pub(super) fn drives(&mut self) -> Result<Vec<Drive>, EngineError> {
+        let mut drives = Vec::new();
+        for (input, d) in self.spec.drives.iter().enumerate() {
+            let body = self.body(&d.name, &d.body)?;
+            let rotor = self.rotor(&d.name, body, &d.rotor)?;
+            if !self.bodies[body].pitches {
+                return Err(value(&d.name, &d.body, "a drive needs a body that pitches, to take its reaction"));
+            }
+            let law = drives::Drive {
+                armature_resistance: positive(&d.name, "armature_resistance", d.armature_resistance)?,
+                armature_inductance: positive(&d.name, "armature_inductance", d.armature_inductance)?,
+                emf_constant: positive(&d.name, "emf_constant", d.emf_constant)?,
+                field_current: positive(&d.name, "field_current", d.field_current)?,
+                gear_ratio: positive(&d.name, "gear_ratio", d.gear_ratio)?,
+                rotor_inertia: positive(&d.name, "rotor_inertia", d.rotor_inertia)?,
+                rotor_damping: d.rotor_damping,
+                transmission_stiffness: positive(&d.name, "transmission_stiffness", d.transmission_stiffness)?,
+                transmission_damping: d.transmission_damping,
+            };
+            let state = self.states.add(format!("{}.armature_current", d.name), 0.0);
+            self.states.add(format!("{}.motor_speed", d.name), 0.0);
+            self.states.add(format!("{}.shaft_twist", d.name), 0.0);
+            drives.push(Drive {
+                name: d.name.clone(),
+                body,
+                rotor,
+                law,
+                gear_sense: d.gear_sense.signum(),
+                voltage_max: positive(&d.name, "armature_voltage_max", d.armature_voltage_max)?,
+                state,
+                input,
+            });
+        }
+        Ok(drives)
+    }
+
+    pub(super) fn hold(&mut self) -> Result<Option<Hold>, EngineError> {
+        let Some(h) = &self.spec.hold else { return Ok(None) };
+        let body = self.body("hold", &h.body)?;
+        let state = self.states.add("hold.integral".into(), 0.0);
+        Ok(Some(Hold {
+            body,
+            proportional: positive("hold", "proportional", h.proportional)?,
+            integral: positive("hold", "integral", h.integral)?,
+            state,
+        }))
+    }
+}

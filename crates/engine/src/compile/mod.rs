@@ -1,0 +1,226 @@
+//! Spec to model: names become indices, design points become body-fixed points, numbers are checked.
+//! Order of the states: bodies, rotors, dampers' forces, actuators, drives, speed hold.
+
+mod elements;
+mod wheels;
+
+use crate::error::EngineError;
+use crate::model::{Body, Joint, Model, Rotor};
+use crate::spec::{BodySpec, JointSpec, RunSpec, Spec};
+use klingel_physics::contact::Material;
+use klingel_physics::track::{Alignment, Segment};
+
+pub use wheels::{named_profile, pair_geometry, prepare};
+
+/// Compiles a spec.
+///
+/// # Errors
+/// Everything that `EngineError` lists before `Equilibrium`.
+pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
+    let segments: Vec<Segment> = spec
+        .track
+        .segments
+        .iter()
+        .map(|s| Segment { length: s.length, curvature: s.curvature, cant: s.cant })
+        .collect();
+    let track = Alignment::new(&segments, positive("track", "cant_base", spec.track.cant_base)?)?;
+    check_run(spec, &track)?;
+
+    let mut states = States::default();
+    let bodies = spec.bodies.iter().map(|b| body(b, &mut states)).collect::<Result<Vec<_>, _>>()?;
+    let mut c = Compiler { spec, bodies, rotors: Vec::new(), joints: Vec::new(), joint_specs: Vec::new(), states };
+    c.rotors()?;
+    let bushings = c.bushings()?;
+    let maxwells = c.maxwells()?;
+    let stops = c.stops()?;
+    let mut inputs: Vec<f64> = spec.drives.iter().map(|d| d.armature_voltage).collect();
+    let actuators = c.actuators(&mut inputs)?;
+    let drives = c.drives()?;
+    let drag =
+        spec.drag.as_ref().map(|d| Ok::<_, EngineError>((c.body("drag", &d.body)?, d.coefficients))).transpose()?;
+    let hold = c.hold()?;
+    let material = Material::STEEL;
+    let wheels = c.wheels(&material)?;
+    let (creep, falling_friction) = wheels::creep_law(&spec.creep, &material)?;
+    let Compiler { bodies, rotors, joints, states, .. } = c;
+    let joint_pairs = mirror_partners(&joints);
+    Ok(Model {
+        track,
+        cant_base: spec.track.cant_base,
+        gravity: spec.gravity,
+        speed: spec.speed,
+        start: spec.track.start,
+        bodies,
+        rotors,
+        joints,
+        joint_pairs,
+        bushings,
+        maxwells,
+        stops,
+        actuators,
+        wheels,
+        drives,
+        drag,
+        hold,
+        creep,
+        falling_friction,
+        contact_dissipation: spec.creep.contact_dissipation,
+        poles: states.poles,
+        state_names: states.names,
+        inputs,
+        run: spec.run.clone(),
+    })
+}
+
+/// Names and decay rates of the states, in order.
+#[derive(Default)]
+struct States {
+    names: Vec<String>,
+    poles: Vec<f64>,
+}
+
+impl States {
+    fn add(&mut self, name: String, pole: f64) -> usize {
+        self.names.push(name);
+        self.poles.push(pole);
+        self.names.len() - 1
+    }
+}
+
+fn value(place: impl Into<String>, value: impl ToString, remedy: &str) -> EngineError {
+    EngineError::Value { place: place.into(), value: value.to_string(), remedy: remedy.into() }
+}
+
+fn positive(place: &str, key: &str, x: f64) -> Result<f64, EngineError> {
+    if x > 0.0 && x.is_finite() { Ok(x) } else { Err(value(format!("{place}.{key}"), x, "give a positive number")) }
+}
+
+fn check_run(spec: &Spec, track: &Alignment) -> Result<(), EngineError> {
+    let RunSpec { duration, step, record_interval, .. } = spec.run;
+    positive("run", "duration", duration)?;
+    positive("run", "step", step)?;
+    if !whole(record_interval / step) {
+        return Err(value("run.record_interval", record_interval, "make it a multiple of the step"));
+    }
+    if let Some(control) = &spec.control
+        && !whole(control.sample_time / step)
+    {
+        return Err(value("control.sample_time", control.sample_time, "make it a multiple of the step"));
+    }
+    let front = spec.bodies.iter().map(|b| b.position[0]).fold(f64::MIN, f64::max);
+    let rear = spec.bodies.iter().map(|b| b.position[0]).fold(f64::MAX, f64::min);
+    let end = spec.track.start + front + spec.speed * duration;
+    if spec.track.start + rear < 0.0 || end > track.length() + 1e-6 * track.length() {
+        return Err(value(
+            "run.duration",
+            duration,
+            &format!(
+                "the vehicle would run from {:.1} to {end:.1} m on a track of 0 to {:.1} m; lengthen the track's ends",
+                spec.track.start + rear,
+                track.length()
+            ),
+        ));
+    }
+    Ok(())
+}
+
+fn whole(ratio: f64) -> bool {
+    ratio >= 1.0 - 1e-9 && (ratio - ratio.round()).abs() < 1e-6
+}
+
+fn body(b: &BodySpec, states: &mut States) -> Result<Body, EngineError> {
+    positive(&b.name, "mass", b.mass)?;
+    for (axis, inertia) in b.inertia.iter().enumerate() {
+        if b.pitches || axis != 1 {
+            positive(&b.name, "inertia", *inertia)?;
+        }
+    }
+    let names: &[&str] = if b.pitches {
+        &["s", "y", "z", "roll", "pitch", "yaw", "vx", "vy", "vz", "wx", "wy", "wz"]
+    } else {
+        &["s", "y", "z", "roll", "yaw", "vx", "vy", "vz", "wx", "wz"]
+    };
+    let first = states.names.len();
+    for name in names {
+        states.add(format!("{}.{name}", b.name), 0.0);
+    }
+    Ok(Body {
+        name: b.name.clone(),
+        mass: b.mass,
+        inertia: b.inertia,
+        position: b.position,
+        pitches: b.pitches,
+        state: first,
+    })
+}
+
+struct Compiler<'a> {
+    spec: &'a Spec,
+    bodies: Vec<Body>,
+    rotors: Vec<Rotor>,
+    joints: Vec<Joint>,
+    joint_specs: Vec<&'a JointSpec>,
+    states: States,
+}
+
+impl<'a> Compiler<'a> {
+    fn body(&self, place: &str, name: &str) -> Result<usize, EngineError> {
+        self.bodies.iter().position(|b| b.name == name).ok_or_else(|| EngineError::Unknown {
+            place: place.into(),
+            what: "body",
+            name: name.into(),
+            known: self.bodies.iter().map(|b| b.name.as_str()).collect::<Vec<_>>().join(", "),
+        })
+    }
+
+    fn rotor(&self, place: &str, body: usize, name: &str) -> Result<usize, EngineError> {
+        self.rotors.iter().position(|r| r.body == body && r.name == name).ok_or_else(|| EngineError::Unknown {
+            place: place.into(),
+            what: "rotor",
+            name: name.into(),
+            known: self
+                .rotors
+                .iter()
+                .filter(|r| r.body == body)
+                .map(|r| r.name.as_str())
+                .collect::<Vec<_>>()
+                .join(", "),
+        })
+    }
+
+    /// Elements that share their joint share its kinematics.
+    fn joint(&mut self, place: &str, j: &'a JointSpec) -> Result<usize, EngineError> {
+        if let Some(i) = self.joint_specs.iter().position(|known| *known == j) {
+            return Ok(i);
+        }
+        let (a, b) = (self.body(place, &j.a)?, self.body(place, &j.b)?);
+        if a == b {
+            return Err(value(place, &j.a, "join two different bodies"));
+        }
+        let local = |body: usize| core::array::from_fn(|i| j.point[i] - self.bodies[body].position[i]);
+        self.joints.push(Joint { a, b, point_a: local(a), point_b: local(b), turns: false });
+        self.joint_specs.push(j);
+        Ok(self.joints.len() - 1)
+    }
+
+    fn rotors(&mut self) -> Result<(), EngineError> {
+        for (body, b) in self.spec.bodies.iter().enumerate() {
+            for r in &b.rotors {
+                positive(&b.name, "rotors.inertia", r.inertia)?;
+                let state = self.states.add(format!("{}.{}.spin_speed", b.name, r.name), 0.0);
+                self.rotors.push(Rotor { name: r.name.clone(), body, inertia: r.inertia, state });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Joints of the same bodies at mirrored points, together; the others alone.
+fn mirror_partners(joints: &[Joint]) -> Vec<(usize, Option<usize>)> {
+    let mirrored = |j: &Joint, k: &Joint| {
+        let flip = |[x, y, z]: [f64; 3]| [x, -y, z];
+        (j.a, j.b) == (k.a, k.b) && j.point_a == flip(k.point_a) && j.point_b == flip(k.point_b)
+    };
+    let partner = |i: usize| (0..joints.len()).find(|&k| k != i && mirrored(&joints[i], &joints[k]));
+    (0..joints.len()).map(|i| (i, partner(i))).filter(|&(i, partner)| partner.is_none_or(|k| i < k)).collect()
+}

@@ -1,0 +1,1 @@
+"""Creep forces against the full theory."""

@@ -1,0 +1,1 @@
+"""Wheel on rail against CONTACT."""

@@ -1,0 +1,1 @@
+"""Kalker's coefficients."""
