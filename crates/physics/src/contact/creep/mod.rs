@@ -4,6 +4,7 @@
 #[cfg(test)]
 mod accuracy;
 mod error;
+mod exact;
 mod fastsim;
 mod flexibility;
 mod kalker;
@@ -15,6 +16,7 @@ mod shen;
 mod tests;
 
 pub use error::CreepError;
+pub use exact::{Exact, ExactSolution, exact_force};
 pub use fastsim::MOST_ELEMENTS;
 pub use kalker::Kalker;
 pub use options::{CreepOptions, FallingFriction, PolachReduction, SlopeReduction};
