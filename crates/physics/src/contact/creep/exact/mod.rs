@@ -1,6 +1,7 @@
 //! Exact theory: steady rolling of a Hertzian ellipse on elastic half-spaces (Kalker's variational theory).
 //! For reference data and tables, not for the simulation loop; the derivation is in docs/theory/exact.md.
 
+mod contacts;
 mod friction;
 mod grid;
 mod influence;
@@ -10,15 +11,15 @@ mod products;
 #[cfg(test)]
 mod tests;
 
+use super::CreepError;
 use super::error::out_of_range;
-use super::{CreepError, RollingContact};
-use crate::contact::Material;
+pub use contacts::{exact_force, exact_forces};
 use grid::Grid;
 use newton::{Found, TOLERANCE};
 use rayon::prelude::*;
 
 /// Least and most elements along and across, and semi-axes' ratios.
-pub const ELEMENTS: [usize; 2] = [4, 160];
+pub const ELEMENTS: [usize; 2] = [4, 80];
 pub const RATIOS: [f64; 2] = [0.02, 50.0];
 
 /// Fewest elements of a division that gives a start for a finer one.
@@ -61,17 +62,27 @@ pub struct ExactSolution {
 }
 
 impl Exact {
+    /// The name beside those of `CreepLaw`, in Python.
+    pub const NAME: &'static str = "exact";
+
     /// The ellipse with the semi-axes' ratio a/b (a in the rolling direction) in a box of `elements` along and across.
     ///
     /// # Errors
     /// A ratio outside `RATIOS`, Poisson's ratio outside 0 to 0.5, a number of elements outside `ELEMENTS`.
     pub fn new(ratio: f64, poisson: f64, elements: [usize; 2]) -> Result<Self, CreepError> {
         check("ratio of the semi-axes a/b", ratio, RATIOS, "slender patches are line contacts")?;
-        check("Poisson's ratio", poisson, [0.0, 0.5], "steel has 0.28")?;
-        for n in elements {
-            check("number of elements", n as f64, ELEMENTS.map(|n| n as f64), "40 x 40 is usual")?;
-        }
+        Self::check(poisson, elements)?;
         Ok(Self::divided(ratio, poisson, elements))
+    }
+
+    /// Refuses what no ellipse could be made of.
+    ///
+    /// # Errors
+    /// Poisson's ratio outside 0 to 0.5, a number of elements outside `ELEMENTS`.
+    pub fn check(poisson: f64, elements: [usize; 2]) -> Result<(), CreepError> {
+        check("Poisson's ratio", poisson, [0.0, 0.5], "steel has 0.28")?;
+        let range = ELEMENTS.map(|n| n as f64);
+        elements.iter().try_for_each(|&n| check("number of elements", n as f64, range, "40 x 40 is usual"))
     }
 
     fn divided(ratio: f64, poisson: f64, elements: [usize; 2]) -> Self {
@@ -171,32 +182,6 @@ impl Exact {
         }
         slip
     }
-}
-
-/// [Fx, Fy, Mz] on the wheel of one contact, N and N m, axes and signs as everywhere (x forward, y right, z down).
-///
-/// ```
-/// use klingel_physics::contact::{Material, creep::{RollingContact, exact_force}};
-/// let patch = RollingContact { a: 6e-3, b: 4e-3, normal_force: 5e4, friction: 0.3, xi: 1e-3, eta: 0.0, phi: 0.0 };
-/// let [fx, fy, _] = exact_force(&patch, &Material::STEEL, [12, 12]).unwrap();
-/// assert!(fx < -5e3 && fx > -1.5e4 && fy.abs() < 1.0);
-/// ```
-///
-/// # Errors
-/// As `Exact::new` and `Exact::solve`; a negative load or friction coefficient.
-pub fn exact_force(c: &RollingContact<f64>, material: &Material, elements: [usize; 2]) -> Result<[f64; 3], CreepError> {
-    check("semi-axis a", c.a, [f64::MIN_POSITIVE, f64::MAX], "it is a length in metres")?;
-    check("semi-axis b", c.b, [f64::MIN_POSITIVE, f64::MAX], "it is a length in metres")?;
-    check("normal force", c.normal_force, [0.0, f64::MAX], "a wheel only presses")?;
-    check("friction coefficient", c.friction, [0.0, f64::MAX], "dry rails have 0.3 to 0.5")?;
-    let ellipse = Exact::new(c.a / c.b, material.poisson, elements)?;
-    let (limit, mean) = (c.friction * c.normal_force, (c.a * c.b).sqrt());
-    if limit == 0.0 {
-        return Ok([0.0; 3]);
-    }
-    let scale = material.shear_modulus() * mean * mean / limit;
-    let [fx, fy, mz] = ellipse.solve([c.xi * scale, c.eta * scale, c.phi * mean * scale])?.force;
-    Ok([fx * limit, fy * limit, mz * limit * mean])
 }
 
 fn check(what: &str, value: f64, range: [f64; 2], remedy: &str) -> Result<(), CreepError> {

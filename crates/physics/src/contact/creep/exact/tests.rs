@@ -1,7 +1,9 @@
 //! The exact solver against CONTACT, Kalker's coefficients, its limits and its mirror images.
 //! Reference rows: full CONTACT (github.com/eve70a/CONTACT), 40 x 40 elements, Hertzian, nu 0.28, G 82 GPa, mu 0.3.
 
+use super::super::RollingContact;
 use super::*;
+use crate::contact::Material;
 
 fn ellipse(ratio: f64, n: usize) -> Exact {
     Exact::new(ratio, 0.28, [n, n]).unwrap()
@@ -169,12 +171,25 @@ fn one_contact_in_its_own_units() {
 }
 
 #[test]
+fn many_contacts_are_each_as_alone() {
+    let wide = RollingContact { a: 4e-3, b: 8e-3, normal_force: 5e4, friction: 0.4, xi: 1e-3, eta: -5e-4, phi: 0.3 };
+    let long = RollingContact { a: 8e-3, b: 4e-3, ..wide };
+    let contacts = [wide, long, RollingContact { xi: 2e-3, ..long }, RollingContact { friction: 0.0, ..wide }, wide];
+    let alone = contacts.map(|c| exact_force(&c, &Material::STEEL, [10, 12]).unwrap());
+    assert_eq!(exact_forces(&contacts, &Material::STEEL, [10, 12]).unwrap(), alone);
+    let line = RollingContact { a: 1.0, ..wide };
+    let (index, error) = exact_forces(&[wide, long, line], &Material::STEEL, [10, 12]).unwrap_err();
+    assert!(index == 2 && error.to_string().contains("a/b: 125 is outside"), "{index} {error}");
+}
+
+#[test]
 fn what_makes_no_contact_is_refused_in_plain_words() {
     let refused = |result: Result<Exact, CreepError>| result.unwrap_err().to_string();
     assert!(refused(Exact::new(0.0, 0.28, [8, 8])).contains("a/b: 0 is outside"));
     assert!(refused(Exact::new(f64::NAN, 0.28, [8, 8])).contains("a/b: NaN"));
     assert!(refused(Exact::new(1.0, 0.6, [8, 8])).contains("Poisson's ratio: 0.6"));
     assert!(refused(Exact::new(1.0, 0.28, [8, 3])).contains("elements: 3"));
+    assert!(refused(Exact::new(1.0, 0.28, [81, 8])).contains("elements: 81"));
     let error = ellipse(1.0, 8).solve([0.0, f64::INFINITY, 0.0]).unwrap_err();
     assert!(error.to_string().contains("lateral creepage: inf"));
     let contact = RollingContact { a: 6e-3, b: 6e-3, normal_force: -1.0, friction: 0.3, ..Default::default() };
