@@ -50,10 +50,16 @@ impl State {
         Self { p, slip, law, residual }
     }
 
-    /// The relative change that the law of friction asks for.
+    /// The relative change that the law of friction asks for; from no traction at all, any change is a whole one.
     fn error(&self) -> f64 {
-        let size = norm(&self.p);
-        if size == 0.0 { norm(&self.residual) } else { norm(&self.residual) / size }
+        let (size, change) = (norm(&self.p), norm(&self.residual));
+        if change == 0.0 {
+            0.0
+        } else if size == 0.0 {
+            1.0
+        } else {
+            change / size
+        }
     }
 
     /// Derivative of the residual along `v`, whose slip is `slip`; the latter is overwritten with the result.

@@ -72,6 +72,18 @@ fn vanishing_creepage_gives_the_coefficients_of_kalker() {
 }
 
 #[test]
+fn force_stays_proportional_down_to_the_least_creepage() {
+    let ellipse = ellipse(1.0, 12);
+    let [fx, fy, mz] = ellipse.solve([1e-5, 2e-5, -1e-5]).unwrap().force;
+    for part in [1e-4, 1e-15, 1e-60] {
+        let f = ellipse.solve([1e-5 * part, 2e-5 * part, -1e-5 * part]).unwrap().force;
+        for (least, little) in [(f[0], fx), (f[1], fy), (f[2], mz)] {
+            assert!((least / part - little).abs() < 1e-3 * little.abs(), "{part}: {f:?}");
+        }
+    }
+}
+
+#[test]
 fn mirrored_and_reversed_creepages_give_the_mirrored_force() {
     let ellipse = ellipse(1.7, 14);
     for [xi, eta, phi] in CREEPAGES {
