@@ -1,4 +1,4 @@
-"""Creep forces of elliptic contact patches by the laws that the simulator uses, for one patch or for arrays of them.
+"""Creep forces of elliptic contact patches by the simulator's laws and by exact theory, for one patch or for arrays.
 Positive creepages of the wheel over the rail give negative forces on the wheel."""
 
 from __future__ import annotations
@@ -14,10 +14,12 @@ from klingel.core import core
 from klingel.errors import InputError, Problem, nearest
 
 Values = NDArray[np.float64]
-CreepLaw = Literal["linear", "shen_hedrick_elkins", "polach", "fastsim"]
+CreepLaw = Literal["linear", "shen_hedrick_elkins", "polach", "fastsim", "exact"]
 
 ELEMENTS = (16, 16)
 """Elements along and across the patch unless told otherwise."""
+DIVIDED = ("fastsim", "exact")
+"""Laws that divide the patch into elements."""
 
 
 @overload
@@ -82,13 +84,15 @@ def creep_force(
     """Fx [N], Fy [N] and Mz [N m] on the wheel, in the contact plane (x forward, y right, z into the rail).
 
     law: `linear` (Kalker's, without a friction limit), `shen_hedrick_elkins` (for little spin), `polach` (closed form
-    with spin) or `fastsim` (Kalker's simplified theory, the best of them); only `linear` and `fastsim` give a moment.
+    with spin), `fastsim` (Kalker's simplified theory, the best of the simulator's) or `exact` (Kalker's full theory,
+    docs/theory/exact.md: the reference for the others, milliseconds a patch, on all cores); only `linear`, `fastsim`
+    and `exact` give a moment.
     a, b: semi-axes along and across rolling [m]; xi, eta: longitudinal and lateral creepage; phi: spin [1/m];
     normal_force [N]; friction: coefficient; shear_modulus [Pa] and poisson of both bodies. Arrays are broadcast against
     each other; plain numbers alone give plain floats.
 
     Options (docs/theory/creep.md has the formulas):
-    elements: of `fastsim`, along and across, up to 40 each; (16, 16) unless given
+    elements: along and across, of `fastsim` up to 40 each and of `exact` 4 to 80; (16, 16) unless given
     blended: of `fastsim`, its three flexibilities blend into one as sliding sets in, which halves the error at no cost;
         True unless given, False is Kalker's original
     slope: of `fastsim`, (k0, alpha, beta) of Spiryagin's reduced initial slope
@@ -96,7 +100,8 @@ def creep_force(
     falling: of any law, (A, B [s/m]): friction mu0 ((1 - A) exp(-B w) + A) with mu0 = `friction`, at the slip velocity
         w = `speed` sqrt(xi^2 + eta^2)
     speed: of rolling [m/s], for `falling`
-    Errors: InputError with every problem of the numbers, or for an unknown law or option.
+    Errors: InputError with every problem of the numbers, for an unknown law or option, or, with the patch's index, for
+    a patch that `exact` has no solution for (a/b outside 0.02 to 50; no convergence, which has not been seen).
 
     >>> steel = {"shear_modulus": 8.2e10, "poisson": 0.28}
     >>> patch = {"a": 6e-3, "b": 4e-3, "normal_force": 5e4, "friction": 0.3, **steel}
@@ -105,6 +110,9 @@ def creep_force(
     (-7549, 0, 0)
     >>> creep_force("polach", xi=[1e-3, 1e-2], eta=0.0, phi=0.0, **patch)[0].round()
     array([ -8074., -14947.])
+    >>> fx, _, _ = creep_force("exact", xi=1e-3, eta=0.0, phi=0.0, **patch)
+    >>> round(fx / 1e3, 1)
+    -7.8
     """
     options = {"slope": (slope, 3), "reduction": (reduction, 2), "falling": (falling, 2)}
     problems = [
@@ -152,7 +160,8 @@ def creep_force(
             falling=falling,
         )
     except core().CoreError as error:
-        raise InputError.single("", None, str(error)) from None
+        message, *place = error.args
+        raise InputError.single(f"patch{_index(place[0], shape)}" if place else "", None, message) from None
     if shape == ():
         fx, fy, mz = (float(values[0]) for values in forces)
         return fx, fy, mz
@@ -163,8 +172,9 @@ def creep_force(
 def _law_problems(law: object, elements: object, blended: object) -> Iterator[Problem]:
     if law not in get_args(CreepLaw):
         yield Problem("law", law, "is not known", remedy=nearest(law, get_args(CreepLaw)))
-    elif elements is not None and law != "fastsim":
-        yield Problem("elements", elements, f"does not belong to {law}", remedy="leave it out or choose fastsim")
+    elif elements is not None and law not in DIVIDED:
+        remedy = f"leave it out or choose {' or '.join(DIVIDED)}"
+        yield Problem("elements", elements, f"does not belong to {law}", remedy=remedy)
     if not _tuple(elements, 2, int, np.integer):
         yield Problem("elements", elements, "is no pair of whole numbers", remedy="give for example (16, 16)")
     if not (blended is None or isinstance(blended, bool)):
@@ -204,7 +214,11 @@ def _number_problems(key: str, values: Values) -> Iterator[Problem]:
     elif not bad.any() and key in NOT_NEGATIVE:
         bad, message = values < 0.0, "must not be negative"
     if bad.any():
-        place = np.unravel_index(int(np.argmax(bad)), values.shape)
-        index = f"[{', '.join(str(int(i)) for i in place)}]" if values.ndim else ""
-        value = float(values[place])
-        yield Problem(f"{key}{index}", value if math.isfinite(value) else str(value), message)
+        place = int(np.argmax(bad))
+        value = float(values.reshape(-1)[place])
+        yield Problem(f"{key}{_index(place, values.shape)}", value if math.isfinite(value) else str(value), message)
+
+
+def _index(place: int, shape: tuple[int, ...]) -> str:
+    """A place counted through an array, as one writes it; nothing for a plain number."""
+    return f"[{', '.join(str(int(i)) for i in np.unravel_index(place, shape))}]" if shape else ""

@@ -166,7 +166,10 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
         )
     for key, choice in (("contact", Contact), ("creep_law", CreepLaw)):
         value, known = getattr(scenario, key), get_args(choice)
-        if value not in known:
+        if (key, value) == ("creep_law", "exact"):
+            remedy = f"choose {', '.join(known)}; klingel.contact.creep_force has it for single patches"
+            yield Problem(key, value, "takes milliseconds a contact, too slow for a simulation", remedy)
+        elif value not in known:
             yield Problem(key, value, "is not known", nearest(value, known))
     yield from _profile_problems(scenario)
     if not isinstance(scenario.creep_options, CreepOptions):

@@ -6,7 +6,7 @@ use crate::error::EngineError;
 use crate::model::Wheel;
 use crate::spec::{CreepSpec, PairSpec, ProfileSpec, Side, Spec};
 use crate::tables::{self, Prepared};
-use klingel_physics::contact::creep::{CreepOptions, FallingFriction, PolachReduction, SlopeReduction};
+use klingel_physics::contact::creep::{CreepOptions, Exact, FallingFriction, PolachReduction, SlopeReduction};
 use klingel_physics::contact::{ContactError, CreepForce, CreepLaw, Material, PairGeometry, Profile};
 use std::sync::Arc;
 
@@ -61,8 +61,10 @@ pub(super) fn creep_law(
     spec: &CreepSpec,
     material: &Material,
 ) -> Result<(CreepForce, Option<FallingFriction>), EngineError> {
+    let slow =
+        if spec.law == Exact::NAME { "it takes milliseconds a contact, too slow for a simulation; " } else { "" };
     let law = CreepLaw::named(&spec.law, spec.elements)
-        .ok_or_else(|| value("creep.law", &spec.law, &format!("choose {}", CreepLaw::NAMES.join(", "))))?;
+        .ok_or_else(|| value("creep.law", &spec.law, &format!("{slow}choose {}", CreepLaw::NAMES.join(", "))))?;
     let options = CreepOptions {
         reduction: spec.reduction.map(|[adhesion, slip]| PolachReduction { adhesion, slip }),
         blended: spec.blended,

@@ -7,6 +7,11 @@ pub enum CreepError {
     OutOfRange { what: String, value: f64, least: f64, most: f64, remedy: String },
     #[error("{option} belongs to {owner}, the chosen law is {law}; leave it out or choose {owner}")]
     Misplaced { option: String, owner: String, law: String },
+    #[error(
+        "exact theory at the scaled creepages {creepage:?}: residual {residual} after {steps} steps; start from a \
+         solution nearby or take fewer elements"
+    )]
+    NoConvergence { creepage: [f64; 3], steps: usize, residual: f64 },
 }
 
 pub(super) fn out_of_range(what: &str, value: f64, [least, most]: [f64; 2], remedy: &str) -> CreepError {

@@ -4,6 +4,7 @@
 #[cfg(test)]
 mod accuracy;
 mod error;
+mod exact;
 mod fastsim;
 mod flexibility;
 mod kalker;
@@ -15,6 +16,7 @@ mod shen;
 mod tests;
 
 pub use error::CreepError;
+pub use exact::{Exact, ExactSolution, exact_force, exact_forces};
 pub use fastsim::MOST_ELEMENTS;
 pub use kalker::Kalker;
 pub use options::{CreepOptions, FallingFriction, PolachReduction, SlopeReduction};
@@ -113,7 +115,7 @@ impl CreepForce {
     /// # Errors
     /// Those of `new`; options of another law or out of their range.
     pub fn with_options(law: CreepLaw, options: CreepOptions, material: &Material) -> Result<Self, CreepError> {
-        options.check(law)?;
+        options.check(law.name())?;
         if !(0.0..=0.5).contains(&material.poisson) {
             return Err(out_of_range("Poisson's ratio", material.poisson, [0.0, 0.5], "steel has 0.28"));
         }

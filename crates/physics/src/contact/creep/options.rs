@@ -1,7 +1,7 @@
 //! What a creep law may be asked for beside its grid: reduced stiffness, blended flexibility, falling friction.
 //! Everything is off by default, which gives the laws for dry and clean bodies as published.
 
-use super::{CreepError, CreepLaw, error::out_of_range};
+use super::{CreepError, error::out_of_range};
 use crate::Scalar;
 
 /// Polach's reduction of the stiffness in the area of adhesion (kA) and of slip (kS), for large creepages and
@@ -49,16 +49,19 @@ pub struct CreepOptions {
 }
 
 impl CreepOptions {
-    /// Refuses options of another law and values out of their range.
-    pub(super) fn check(&self, law: CreepLaw) -> Result<(), CreepError> {
+    /// Refuses options of another law than the named one.
+    ///
+    /// # Errors
+    /// Options of another law; values out of their range.
+    pub fn check(&self, law: &str) -> Result<(), CreepError> {
         for (option, given, owner) in [
             ("reduction (kA, kS)", self.reduction.is_some(), "polach"),
             ("blended", self.blended, "fastsim"),
             ("slope (k0, alpha, beta)", self.slope.is_some(), "fastsim"),
         ] {
-            if given && law.name() != owner {
+            if given && law != owner {
                 let (option, owner) = (option.into(), owner.into());
-                return Err(CreepError::Misplaced { option, owner, law: law.name().into() });
+                return Err(CreepError::Misplaced { option, owner, law: law.into() });
             }
         }
         if let Some(PolachReduction { adhesion, slip }) = self.reduction {
