@@ -12,6 +12,8 @@ pub enum CreepError {
          solution nearby or take fewer elements"
     )]
     NoConvergence { creepage: [f64; 3], steps: usize, residual: f64 },
+    #[error("creep table: {problem}")]
+    Table { problem: String },
 }
 
 pub(super) fn out_of_range(what: &str, value: f64, [least, most]: [f64; 2], remedy: &str) -> CreepError {

@@ -12,6 +12,7 @@ mod linear;
 mod options;
 mod polach;
 mod shen;
+mod table;
 #[cfg(test)]
 mod tests;
 
@@ -20,6 +21,7 @@ pub use exact::{Exact, ExactSolution, exact_force, exact_forces};
 pub use fastsim::MOST_ELEMENTS;
 pub use kalker::Kalker;
 pub use options::{CreepOptions, FallingFriction, PolachReduction, SlopeReduction};
+pub use table::{CreepTable, Maker, Provenance};
 
 use super::Material;
 use crate::{Dual, Scalar};
@@ -37,15 +39,17 @@ pub enum CreepLaw {
     Polach,
     /// Kalker's simplified theory with `nx` elements along each of `ny` strips.
     Fastsim { nx: usize, ny: usize },
+    /// Kalker's full theory, from a table.
+    Table,
 }
 
 impl CreepLaw {
     /// The names that `named` knows.
-    pub const NAMES: [&'static str; 4] = ["linear", "shen_hedrick_elkins", "polach", "fastsim"];
+    pub const NAMES: [&'static str; 5] = ["linear", "shen_hedrick_elkins", "polach", "fastsim", CreepTable::NAME];
 
     /// The law of a name; `nx` and `ny` are for those that divide the patch.
     pub fn named(name: &str, [nx, ny]: [usize; 2]) -> Option<Self> {
-        let laws = [Self::Linear, Self::ShenHedrickElkins, Self::Polach, Self::Fastsim { nx, ny }];
+        let laws = [Self::Linear, Self::ShenHedrickElkins, Self::Polach, Self::Fastsim { nx, ny }, Self::Table];
         laws.into_iter().find(|law| law.name() == name)
     }
 
@@ -56,6 +60,7 @@ impl CreepLaw {
             Self::ShenHedrickElkins => "shen_hedrick_elkins",
             Self::Polach => "polach",
             Self::Fastsim { .. } => "fastsim",
+            Self::Table => CreepTable::NAME,
         }
     }
 }
@@ -105,7 +110,7 @@ impl CreepForce {
     /// The law as published, without options.
     ///
     /// # Errors
-    /// No elements or more than `MOST_ELEMENTS` either way; Poisson's ratio outside 0 to 0.5.
+    /// No elements or more than `MOST_ELEMENTS` either way; Poisson's ratio outside 0 to 0.5, or not the table's.
     pub fn new(law: CreepLaw, material: &Material) -> Result<Self, CreepError> {
         Self::with_options(law, CreepOptions::default(), material)
     }
@@ -123,6 +128,9 @@ impl CreepForce {
         let most = MOST_ELEMENTS as f64;
         if let Some(&n) = [nx, ny].iter().find(|&&n| n == 0 || n > MOST_ELEMENTS) {
             return Err(out_of_range("number of FASTSIM elements", n as f64, [1.0, most], "16 x 16 is usual"));
+        }
+        if law == CreepLaw::Table {
+            CreepTable::built_in().check(material.poisson)?;
         }
         let (kalker, grid) = (Kalker::new(material.poisson), Grid::new(nx, ny));
         Ok(Self { law, options, shear_modulus: material.shear_modulus(), kalker, grid })
@@ -156,6 +164,7 @@ impl CreepForce {
                 let stiffness = flexibility::stiffness(kalker, g, slope, blended, &c, bound);
                 fastsim::fastsim(&self.grid, &stiffness, bound, &c)
             }
+            CreepLaw::Table => CreepTable::built_in().force(kalker, g, &c),
         }
     }
 }

@@ -1,0 +1,100 @@
+//! Exact creep forces from a table: the full theory of rolling contact at the cost of a spline.
+//! Coordinates, symmetries, the limiter and how the table is made are derived in docs/theory/creep_table.md.
+
+mod coordinates;
+mod file;
+mod fit;
+mod lookup;
+mod maker;
+#[cfg(test)]
+mod tests;
+
+use super::error::out_of_range;
+use super::kalker::Kalker;
+use super::polach::limit;
+use super::{CreepError, RollingContact};
+use crate::{Mask, Scalar};
+use coordinates::{RIM, inside, limited, scales, slenderness};
+pub use file::Provenance;
+use lookup::Spline;
+pub use maker::Maker;
+use std::sync::OnceLock;
+
+/// The table in the package, made by `klingel contact-table`.
+const BUILT_IN: &[u8] = include_bytes!("../../../../data/creep_table.bin");
+
+/// Creepages below this count as none, so that the size of the slip has a slope.
+const LEAST_CREEPAGE: f64 = 1e-14;
+
+/// Forces of the exact theory over all creepages and a/b from 1/36 to 36, for one Poisson's ratio.
+///
+/// ```
+/// use klingel_physics::contact::creep::CreepTable;
+/// let table = CreepTable::built_in();
+/// assert!((table.provenance().poisson - 0.28).abs() < 1e-12);
+/// ```
+#[derive(Debug)]
+pub struct CreepTable {
+    provenance: Provenance,
+    spline: Spline,
+}
+
+impl CreepTable {
+    /// The name of the law in files and in Python.
+    pub const NAME: &'static str = "table";
+    /// Least and largest a/b. Beyond them the shape of the end goes on with Kalker's coefficients of the true ratio.
+    pub const RATIOS: [f64; 2] = [1.0 / 36.0, 36.0];
+
+    /// The table of the package.
+    ///
+    /// # Panics
+    /// If what was compiled in is damaged, which a test excludes.
+    pub fn built_in() -> &'static Self {
+        static TABLE: OnceLock<CreepTable> = OnceLock::new();
+        TABLE.get_or_init(|| Self::from_bytes(BUILT_IN).expect("the table in the package is whole"))
+    }
+
+    /// A table from its file.
+    ///
+    /// # Errors
+    /// A file of another kind or version; a check sum that does not fit.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, CreepError> {
+        let (provenance, spline) = file::read(bytes)?;
+        Ok(Self { provenance, spline })
+    }
+
+    /// Refuses another material than the table's.
+    ///
+    /// # Errors
+    /// Another Poisson's ratio.
+    pub fn check(&self, poisson: f64) -> Result<(), CreepError> {
+        let own = self.provenance.poisson;
+        let same = (poisson - own).abs() < 1e-9;
+        let what = "Poisson's ratio of the creep table";
+        if same { Ok(()) } else { Err(out_of_range(what, poisson, [own, own], "choose fastsim for other materials")) }
+    }
+
+    /// What it was made of.
+    pub fn provenance(&self) -> &Provenance {
+        &self.provenance
+    }
+
+    /// [Fx, Fy, Mz] on the wheel, N and N m.
+    pub(super) fn force<S: Scalar>(&self, kalker: &Kalker, shear_modulus: f64, c: &RollingContact<S>) -> [S; 3] {
+        let (limit, [root_a, root_b]) = (limit(c), [c.a.sqrt(), c.b.sqrt()]);
+        let (mean, q) = (root_a * root_b, slenderness(root_a, root_b));
+        let within = inside(q);
+        let mut scale = self.spline.scales(q.clamp(-RIM, RIM));
+        if !within.all() {
+            let beyond = scales(kalker, c.a / c.b);
+            scale = core::array::from_fn(|i| S::select(within, scale[i], beyond[i]));
+        }
+        let w = [scale[0] * c.xi, scale[1] * c.eta, scale[2] * c.phi * mean];
+        let size = (w[0].square() + w[1].square() + w[2].square() + LEAST_CREEPAGE * LEAST_CREEPAGE).sqrt();
+        // u = v/(m0 + |v|) with v = w G a b/(mu N); so written, no load is no trouble.
+        let inverse = (limit / (mean * mean) * (coordinates::KNEE / shear_modulus) + size).recip();
+        let [fx, fy, mz] = self.spline.at([w[0] * inverse, w[1] * inverse, w[2] * inverse, q.clamp(-RIM, RIM)]);
+        let [fx, fy] = limited([fx, fy]);
+        [fx * limit, fy * limit, mz * limit * (c.a + c.b) * 0.5]
+    }
+}
