@@ -141,6 +141,24 @@ impl Exact {
         [0, 1, 2].map(|i| [0, 1, 2].map(|j| columns[j][i]))
     }
 
+    /// Forces of full sliding, the limit of large creepages of this direction.
+    ///
+    /// ```
+    /// use klingel_physics::contact::creep::Exact;
+    /// let [fx, fy, _] = Exact::new(1.0, 0.28, [12, 12]).unwrap().sliding([3.0, 4.0, 0.0]);
+    /// assert!((fx + 0.6).abs() < 1e-12 && (fy + 0.8).abs() < 1e-12);
+    /// ```
+    pub fn sliding(&self, creepage: [f64; 3]) -> [f64; 3] {
+        let (slip, n) = (self.rigid_slip(creepage), self.grid.size());
+        let mut tractions = vec![0.0; 2 * n];
+        for (_, _, k) in self.grid.elements() {
+            let size = slip[k].hypot(slip[n + k]).max(f64::MIN_POSITIVE);
+            let factor = -self.grid.bound[k] / size;
+            (tractions[k], tractions[n + k]) = (factor * slip[k], factor * slip[n + k]);
+        }
+        self.resultant(&tractions)
+    }
+
     /// Forces and moment of tractions.
     fn resultant(&self, tractions: &[f64]) -> [f64; 3] {
         let (n, area) = (self.grid.size(), self.grid.sides[0] * self.grid.sides[1]);

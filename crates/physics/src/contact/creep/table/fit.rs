@@ -5,27 +5,15 @@ use super::coordinates::size;
 
 /// Steps beyond the ball that nodes are needed for: one and a half for the spline, one for the ends of the fit.
 const MARGIN: f64 = 2.5;
-/// Full sliding: so near the surface that nothing changes any more.
-const SURFACE: f64 = 1.0 - 1e-5;
+/// Rounds of the fit, each with the nodes beyond the ball from the one before: their change falls below 1e-9.
+const ROUNDS: usize = 40;
 
-/// Nodes in and about the ball |u| < 1, of which the quarter u1 >= 0, u3 >= 0 is solved.
+/// Nodes in and about the ball |u| < 1; forces are solved at those inside, of the quarter u1 >= 0, u3 >= 0.
 #[derive(Clone, Debug)]
 pub(super) struct Ball {
     intervals: [usize; 3],
-    /// Of each solved node: its place, and where its forces are found among the places.
-    nodes: Vec<([i64; 3], Source)>,
-    places: Vec<[f64; 3]>,
-}
-
-/// Forces of a node by the index of the places that give them.
-#[derive(Clone, Copy, Debug)]
-enum Source {
-    Inside(usize),
-    /// Twice the surface less the place as far below it as the node is above.
-    Beyond {
-        surface: usize,
-        below: usize,
-    },
+    inside: Vec<[i64; 3]>,
+    beyond: Vec<[i64; 3]>,
 }
 
 /// Numbers at all nodes of the box about the ball, three each.
@@ -33,15 +21,15 @@ pub(super) type Field = Vec<[f64; 3]>;
 
 impl Ball {
     pub fn new(intervals: [usize; 3]) -> Self {
-        let mut ball = Self { intervals, nodes: vec![], places: vec![] };
+        let mut ball = Self { intervals, inside: vec![], beyond: vec![] };
         let [r1, r2, r3] = ball.reach();
         for i in 0..=r1 {
             for j in -r2..=r2 {
                 for k in 0..=r3 {
                     let node = [i, j, k];
                     if (k > 0 || j >= 0) && ball.needed(node) {
-                        let source = ball.source(node);
-                        ball.nodes.push((node, source));
+                        let inside = size(ball.place(node)) < 1.0 - 1e-9;
+                        if inside { ball.inside.push(node) } else { ball.beyond.push(node) }
                     }
                 }
             }
@@ -49,9 +37,14 @@ impl Ball {
         ball
     }
 
-    /// Where forces are wanted: places of the ball |u| < 1.
-    pub fn places(&self) -> &[[f64; 3]] {
-        &self.places
+    /// How many forces are wanted.
+    pub fn count(&self) -> usize {
+        self.inside.len()
+    }
+
+    /// Where forces are wanted.
+    pub fn places(&self) -> impl Iterator<Item = [f64; 3]> {
+        self.inside.iter().map(|&node| self.place(node))
     }
 
     /// The farthest node of each axis.
@@ -68,21 +61,6 @@ impl Ball {
         [0, 1, 2].map(|a| node[a] as f64 / self.intervals[a] as f64)
     }
 
-    fn source(&mut self, node: [i64; 3]) -> Source {
-        let place = self.place(node);
-        let t = size(place);
-        let mut add = |place: [f64; 3]| {
-            self.places.push(place);
-            self.places.len() - 1
-        };
-        if t < SURFACE {
-            return Source::Inside(add(place));
-        }
-        let at = |to: f64| place.map(|u| u / t * to);
-        let surface = add(at(SURFACE));
-        Source::Beyond { surface, below: if t > 2.0 - SURFACE { add(at(2.0 - t)) } else { surface } }
-    }
-
     fn lengths(&self) -> [usize; 3] {
         self.reach().map(|r| 2 * r as usize + 1)
     }
@@ -93,19 +71,39 @@ impl Ball {
     }
 
     /// Coefficients of the spline that meets the forces at the places, in the whole box; zero where none are needed.
-    pub fn fit(&self, forces: &[[f64; 3]]) -> Field {
+    ///
+    /// `surface` gives the forces of full sliding in a direction. Beyond the surface, forces are twice those there less
+    /// those as far below, which the spline itself tells from round to round.
+    pub fn fit(&self, forces: &[[f64; 3]], surface: impl Fn([f64; 3]) -> [f64; 3]) -> Field {
+        let mirrors: Vec<([f64; 3], [f64; 3])> = self
+            .beyond
+            .iter()
+            .map(|&node| {
+                let (place, t) = (self.place(node), size(self.place(node)));
+                (surface(place), place.map(|u| u / t * (2.0 - t)))
+            })
+            .collect();
+        let mut beyond: Vec<[f64; 3]> = mirrors.iter().map(|(at, _)| *at).collect();
+        for _ in 0..ROUNDS {
+            let field = self.through(forces, &beyond);
+            for (node, (at, below)) in core::iter::zip(&mut beyond, &mirrors) {
+                let value = self.value(&field, *below);
+                *node = core::array::from_fn(|f| 2.0 * at[f] - value[f]);
+            }
+        }
+        self.through(forces, &beyond)
+    }
+
+    /// Coefficients from the values at the nodes inside and beyond.
+    fn through(&self, inside: &[[f64; 3]], beyond: &[[f64; 3]]) -> Field {
         let mut field = vec![[0.0; 3]; self.lengths().iter().product()];
-        for &([i, j, k], source) in &self.nodes {
-            let [fx, fy, mz] = match source {
-                Source::Inside(at) => forces[at],
-                Source::Beyond { surface, below } => {
-                    core::array::from_fn(|f| 2.0 * forces[surface][f] - forces[below][f])
-                }
-            };
+        let values = inside.iter().chain(beyond);
+        for (&[i, j, k], &[fx, fy, mz]) in self.inside.iter().chain(&self.beyond).zip(values) {
             // Fx turns with the sign of u1, Fy and Mz with that of (u2, u3).
-            for (a, b) in [(1, 1.0), (-1, -1.0)] {
-                field[self.index([a * i, j, k])] = [b * fx, fy, mz];
-                field[self.index([a * i, -j, -k])] = [b * fx, -fy, -mz];
+            for sign in [1, -1] {
+                let fx = sign as f64 * fx;
+                field[self.index([sign * i, j, k])] = [fx, fy, mz];
+                field[self.index([sign * i, -j, -k])] = [fx, -fy, -mz];
             }
         }
         self.settle(&mut field);

@@ -86,15 +86,15 @@ impl Maker {
 
     /// How many pieces the work has.
     pub fn parts(&self) -> usize {
-        let shares = |level: usize| self.balls[level].places().len().div_ceil(SHARE[level]);
+        let shares = |level: usize| self.balls[level].count().div_ceil(SHARE[level]);
         (self.intervals[3] + 1) * (shares(0) + shares(1))
     }
 
     fn part(&self, index: usize) -> Part {
-        let shares = [0, 1].map(|level: usize| self.balls[level].places().len().div_ceil(SHARE[level]));
+        let shares = [0, 1].map(|level: usize| self.balls[level].count().div_ceil(SHARE[level]));
         let (q, rest) = (index / (shares[0] + shares[1]), index % (shares[0] + shares[1]));
         let (level, share) = if rest < shares[0] { (0, rest) } else { (1, rest - shares[0]) };
-        let end = self.balls[level].places().len();
+        let end = self.balls[level].count();
         Part { q, level, places: share * SHARE[level]..((share + 1) * SHARE[level]).min(end) }
     }
 
@@ -127,14 +127,14 @@ impl Maker {
         let coarse = Exact::new(ratio, self.poisson, coarse)?;
         let fine = if level == 1 { Some(Exact::new(ratio, self.poisson, fine)?) } else { None };
         let force = |&place: &[f64; 3]| {
-            let v = creepage(place);
-            let creepage = [0, 1, 2].map(|i| v[i] / scale[i]);
+            let creepage = over(creepage(place), scale);
             let base = coarse.solve(creepage)?.force;
             let Some(fine) = &fine else { return Ok(base) };
             let better = fine.solve(creepage)?.force;
             Ok([0, 1, 2].map(|i| better[i] - base[i]))
         };
-        self.balls[level].places()[places].par_iter().map(force).collect()
+        let wanted: Vec<[f64; 3]> = self.balls[level].places().skip(places.start).take(places.len()).collect();
+        wanted.par_iter().map(force).collect()
     }
 
     fn scale(&self, q: usize) -> [f64; 3] {
@@ -160,7 +160,7 @@ impl Maker {
                 };
                 self.quarter(q, &of(0), &of(1))
             })
-            .collect();
+            .collect::<Result<_, _>>()?;
         let nodes =
             (0..quarters[0].len()).flat_map(|node| along(&quarters.iter().map(|f| f[node]).collect::<Vec<_>>()));
         let scale = along(&(0..count).map(|q| self.scale(q)).collect::<Vec<_>>());
@@ -169,23 +169,36 @@ impl Maker {
     }
 
     /// Coefficients over the ball at one slenderness.
-    fn quarter(&self, q: usize, base: &[[f64; 3]], correction: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    fn quarter(&self, q: usize, base: &[[f64; 3]], correction: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, CreepError> {
+        let (ratio, scale) = (ratio(self.slenderness(q)), self.scale(q));
+        let coarse = Exact::new(ratio, self.poisson, self.elements[0])?;
+        let fine = Exact::new(ratio, self.poisson, self.elements[1])?;
+        let sliding = |ellipse: &Exact, place: [f64; 3]| ellipse.sliding(over(place, scale));
         let [ball, second] = &self.balls;
-        let correction = second.fit(correction);
-        let root = ratio(self.slenderness(q)).sqrt();
+        let correction = second.fit(correction, |place| {
+            let (better, base) = (sliding(&fine, place), sliding(&coarse, place));
+            core::array::from_fn(|i| better[i] - base[i])
+        });
         // The solver's moment is over mu N sqrt(ab), the table's over mu N (a + b)/2.
-        let lever = 2.0 / (root.sqrt() + 1.0 / root.sqrt());
+        let lever = 2.0 / (ratio.sqrt() + 1.0 / ratio.sqrt());
+        let stored = |[fx, fy, mz]: [f64; 3]| {
+            let over = fx.hypot(fy).max(1.0);
+            let [fx, fy] = unlimited([fx / over, fy / over]);
+            [fx, fy, mz * lever]
+        };
         let forces: Vec<[f64; 3]> = core::iter::zip(ball.places(), base)
-            .map(|(&place, base)| {
+            .map(|(place, base)| {
                 let more = second.value(&correction, place);
-                let force = [0, 1].map(|i| base[i] + more[i]);
-                let over = force[0].hypot(force[1]).max(1.0);
-                let [fx, fy] = unlimited(force.map(|f| f / over));
-                [fx, fy, (base[2] + more[2]) * lever]
+                stored(core::array::from_fn(|i| base[i] + more[i]))
             })
             .collect();
-        ball.quarter(&ball.fit(&forces))
+        Ok(ball.quarter(&ball.fit(&forces, |place| stored(sliding(&fine, place)))))
     }
+}
+
+/// Creepages without their scale.
+fn over(v: [f64; 3], scale: [f64; 3]) -> [f64; 3] {
+    core::array::from_fn(|i| v[i] / scale[i])
 }
 
 /// SHA-256 over the sources.
