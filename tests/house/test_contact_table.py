@@ -124,7 +124,7 @@ def test_parts_go_into_the_cache_folder(
 
 
 def test_ctrl_c_keeps_what_is_solved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    options = ["--elements", "32x32", "--out", str(tmp_path / "out.bin"), "--work", str(tmp_path / "work")]
+    options = ["--elements", "20x20", "--out", str(tmp_path / "out.bin"), "--work", str(tmp_path / "work")]
     program = "from klingel.cli import main; main()"
     # A job of a shell's background inherits a SIGINT that is ignored; a person at a terminal does not.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)

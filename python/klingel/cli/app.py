@@ -119,7 +119,10 @@ def contact_table(
     poisson: Annotated[float, typer.Option(help="Poisson's ratio of both bodies.")] = 0.28,
     check: Annotated[bool, typer.Option("--check", help="Check the built-in table instead.")] = False,
 ) -> None:
-    """Make the table of creep forces with exact theory, some minutes; a second start goes on where one ended."""
+    """Make the table of creep forces with exact theory, on all cores; another start goes on where the last one ended.
+
+    In a checkout, `--out crates/physics/data/creep_table.bin` and `make build` put it into the package.
+    """
     if check:
         from klingel.cli.table_check import check_built_in
 
