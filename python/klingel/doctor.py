@@ -79,8 +79,8 @@ def _core_findings() -> list[Finding]:
         ),
         Finding("CPU features", ", ".join(info["cpu_features"]) or "baseline"),
     ]
-    findings.append(_cache())
     root = checkout()
+    findings += [_cache(), _creep_table(root)]
     if root is None:
         return [*findings, Finding("sources", f"installed, built from {info['source_hash'][:12]}")]
     fresh = source_hash(root) == info["source_hash"]
@@ -97,6 +97,19 @@ def _cache() -> Finding:
     size = sum(size for _, size, _ in tables) / 1e6
     text = f"{folder}: {len(tables)} contact tables, {size:.0f} MB, check sums "
     return Finding("cache", text + (f"wrong in {', '.join(damaged)}: remove it" if damaged else "right"), not damaged)
+
+
+def _creep_table(root: Path | None) -> Finding:
+    """The table of creep forces in the core, and whether it is that of the checkout."""
+    from klingel.contact.table import creep_table, header
+
+    table = creep_table()
+    text = f"{table}, SHA-256 {table.check_sum[:12]} right"
+    if root is None:
+        return Finding("creep table", text)
+    file = root / "crates" / "physics" / "data" / "creep_table.bin"
+    same = header(file.read_bytes()).get("checksum") == table.check_sum
+    return Finding("creep table", text if same else f"{text}, but {file.name} is another: run `make build`", same)
 
 
 def _package(name: str) -> Finding:

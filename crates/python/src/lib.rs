@@ -2,6 +2,7 @@
 //! Every message of the core is passed on as it is; `klingel.errors` sorts them.
 
 mod creep;
+mod creep_table;
 mod pair;
 
 use klingel_engine::{EngineError, Spec};
@@ -151,6 +152,9 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(profile, m)?)?;
     m.add_function(wrap_pyfunction!(creep::creep_force, m)?)?;
     m.add_function(wrap_pyfunction!(creep::creep_laws, m)?)?;
+    m.add_class::<creep_table::CreepTableMaker>()?;
+    m.add_function(wrap_pyfunction!(creep_table::creep_table, m)?)?;
+    m.add_function(wrap_pyfunction!(creep_table::cache_folder, m)?)?;
     m.add_function(wrap_pyfunction!(build_info, m)?)?;
     m.add("CoreError", m.py().get_type::<CoreError>())?;
     m.add("Cancelled", m.py().get_type::<Cancelled>())?;

@@ -1,4 +1,4 @@
-"""Command line of Klingel: `klingel study perez2004`, `run`, `vehicles`, `doctor`.
+"""Command line of Klingel: `klingel study perez2004`, `run`, `profile`, `contact-table`, `vehicles`, `doctor`.
 Bad input prints one message and exits with 2; Ctrl-C exits with 130; nothing half-written is left behind."""
 
 from __future__ import annotations
@@ -27,16 +27,18 @@ def run(arguments: list[str]) -> int:
         return _cancelled() if code == CANCELLED else code
     except InputError as error:
         return _say("bad input", error, 2)
-    except (KeyboardInterrupt, RunCancelledError):
+    except RunCancelledError as ended:
+        return _cancelled(*getattr(ended, "__notes__", ()))
+    except KeyboardInterrupt:
         return _cancelled()
     except KlingelError as error:
         return _say("failed", error, 1)
     return 0
 
 
-def _cancelled() -> int:
+def _cancelled(kept: str = "finished runs are kept") -> int:
     # Plain, as Ctrl-C may have come while the packages for colour were being imported.
-    print("cancelled: finished runs are kept", file=sys.stderr)
+    print(f"cancelled: {kept}", file=sys.stderr)
     return CANCELLED
 
 

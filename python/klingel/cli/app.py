@@ -106,6 +106,33 @@ def profile(
     typer.echo(path)
 
 
+@app.command("contact-table")
+def contact_table(
+    out: Annotated[Path, typer.Option(help="File to write.")] = Path("creep_table.bin"),
+    work: Annotated[
+        Path | None, typer.Option(help="Folder for finished parts; default: in the user's cache folder.")
+    ] = None,
+    elements: Annotated[str, typer.Option(help="Of a patch, along x across.")] = "40x40",
+    intervals: Annotated[
+        str | None, typer.Option(help="Of three creepages and of the semi-axes' ratio, such as 12x16x20x22.")
+    ] = None,
+    poisson: Annotated[float, typer.Option(help="Poisson's ratio of both bodies.")] = 0.28,
+    check: Annotated[bool, typer.Option("--check", help="Check the built-in table instead.")] = False,
+) -> None:
+    """Make the table of creep forces with exact theory, on all cores; another start goes on where the last one ended.
+
+    In a checkout, `--out crates/physics/data/creep_table.bin` and `make build` put it into the package.
+    """
+    if check:
+        from klingel.cli.table_check import check_built_in
+
+        check_built_in(typer.echo)
+    else:
+        from klingel.cli.contact_table import Shape, make
+
+        make(out, work, Shape(poisson, elements, intervals), typer.echo)
+
+
 @app.command()
 def vehicles(
     name: Annotated[str | None, typer.Argument(help="Show the parameters of this one, with status and source.")] = None,

@@ -14,7 +14,7 @@ from klingel.core import core
 from klingel.errors import InputError, Problem, nearest
 
 Values = NDArray[np.float64]
-CreepLaw = Literal["linear", "shen_hedrick_elkins", "polach", "fastsim", "exact"]
+CreepLaw = Literal["linear", "shen_hedrick_elkins", "polach", "fastsim", "table", "exact"]
 
 ELEMENTS = (16, 16)
 """Elements along and across the patch unless told otherwise."""
