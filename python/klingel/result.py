@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import os
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from concurrent.futures import TimeoutError as NotYet
 from pathlib import Path
@@ -51,7 +51,7 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, strict: bo
     progress: shared with whoever watches or cancels; strict: raise when the run did not complete.
     Returns a Dataset over `time` [s], one variable a channel with attribute `units`; attributes `spec` (JSON),
     `outcome` ("completed", or what happened where and when), `realtime_factor` (simulated over CPU seconds of the
-    stepping thread), `static_wheel_loads` (JSON, N). Ctrl-C ends the run.
+    stepping thread), `static_wheel_loads` (JSON, N), `notes` (what a reader should know, mostly nothing). Ctrl-C ends the run.
     Errors: SimulationError for a spec that the core refuses or has no equilibrium for, and if `strict` for a run that
     did not complete; RunCancelledError.
     """
@@ -122,7 +122,23 @@ def _dataset(raw: Mapping[str, Any], spec: str) -> xr.Dataset:
         name: ("time", values, {"units": unit})
         for name, unit, values in zip(raw["channels"], raw["units"], columns, strict=True)
     }
-    return xr.Dataset(variables, coords={"time": ("time", time, {"units": "s"})}, attrs=attrs)
+    result = xr.Dataset(variables, coords={"time": ("time", time, {"units": "s"})}, attrs=attrs)
+    result.attrs["notes"] = "; ".join(_notes(result, json.loads(spec)))
+    return result
+
+
+def _notes(result: xr.Dataset, spec: Spec) -> Iterator[str]:
+    """What a reader of the numbers should know."""
+    wheels = [str(name) for name in result.data_vars if str(name).endswith(".slender_force")]
+    if spec["creep"]["law"] == "table" and wheels:
+        forces = np.array([result[wheel].to_numpy() for wheel in wheels])
+        place, when = np.unravel_index(np.argmax(forces), forces.shape)
+        if (most := forces[place, when]) > 0.0:
+            yield (
+                f"creep table: beyond its a/b of 1/36 to 36 in {(forces > 0.0).mean():.2%} of the samples of all wheels, "
+                f"with at most {most / 1e3:.2f} kN at {wheels[int(place)].removesuffix('.slender_force')} "
+                f"at {float(result.time[when]):.2f} s; there the shape of its end goes on"
+            )
 
 
 def save(result: xr.Dataset, path: str | Path, *, rate: float | None = DISK_RATE) -> Path:

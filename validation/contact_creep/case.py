@@ -1,5 +1,5 @@
 """Creep forces of an ellipse against the full theory: every law, every kind of creepage, round and slender patches.
-The exact law against CONTACT; then FASTSIM and its modified form against CONTACT's own, creepage by creepage."""
+The exact law and its table against CONTACT; then FASTSIM and its modified form against CONTACT's own, creepage by creepage."""
 
 from __future__ import annotations
 
@@ -47,9 +47,10 @@ WHEEL_LOAD, SPEED = 106.7e3, 10.0
 
 
 def run() -> Iterator[Row]:
-    """The exact law, FASTSIM and the closed laws against the full theory; then the traction curves."""
+    """The exact law, its table, FASTSIM and the closed laws against the full theory; then the traction curves."""
     rows = references()
     yield from _exact(rows[rows["source"] == "contact"].iloc[::EXACT_SHARE])
+    yield from _table(rows)
     asked = rows[rows["aob"].isin(ASKED)]
     for form, limit, options in FORMS:
         yield from _fastsim(rows, asked, form, limit, options)
@@ -71,6 +72,16 @@ def _exact(rows: pd.DataFrame) -> Iterator[Row]:
     yield Row.at_most("exact 40 x 40", "CONTACT 40 x 40", rms(error), 0.005)
     yield Row.at_most("exact 40 x 40, largest", "CONTACT 40 x 40", float(error.max()), 0.02)
     yield Row.shown("exact 40 x 40, moment over mu Fn sqrt(ab)", "CONTACT 40 x 40", rms(moment))
+
+
+def _table(rows: pd.DataFrame) -> Iterator[Row]:
+    """Forces for every a/b, moments for all."""
+    for ratio in sorted((*ASKED, *BEYOND)):
+        error = force_error(rows[rows["aob"] == ratio], "table")
+        yield Row.at_most(f"table, a/b {ratio:g}", "full theory", rms(error), 0.005)
+        yield Row.at_most(f"table, a/b {ratio:g}, largest", "full theory", float(error.max()), 0.02)
+    moment = computed(rows, "table")[2] - rows["mz_rel_c"]
+    yield Row.shown("table, moment over mu Fn sqrt(ab)", "full theory", rms(moment.to_numpy()))
 
 
 def _fastsim(

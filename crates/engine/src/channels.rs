@@ -28,7 +28,7 @@ const BODY: [(&str, &str); 14] = [
     ("yaw_moment", "N m"),
 ];
 
-const WHEEL: [(&str, &str); 11] = [
+const WHEEL: [(&str, &str); 12] = [
     ("Q", "N"),
     ("Y", "N"),
     ("X", "N"),
@@ -36,6 +36,7 @@ const WHEEL: [(&str, &str); 11] = [
     ("spin_work", "N"),
     ("contact_angle", "rad"),
     ("steep_force", "N"),
+    ("slender_force", "N"),
     ("tread_force", "N"),
     ("root_force", "N"),
     ("flange_force", "N"),
@@ -119,6 +120,6 @@ fn body_row(
 fn wheel_row(state: &WheelState<f64>, spin_speed: f64) -> [f64; WHEEL.len()] {
     let [x, y, z] = state.force_T.0;
     let [tread, root, flange] = state.normal;
-    let (angle, steep) = (state.contact_angle, state.steep_force);
-    [-z, -y, x, state.t_gamma, state.spin_work, angle, steep, tread, root, flange, spin_speed]
+    let (angle, steep, slender) = (state.contact_angle, state.steep_force, state.slender_force);
+    [-z, -y, x, state.t_gamma, state.spin_work, angle, steep, slender, tread, root, flange, spin_speed]
 }

@@ -168,7 +168,7 @@ pub enum Side {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CreepSpec {
-    /// `linear`, `shen_hedrick_elkins`, `polach`, `fastsim`.
+    /// `linear`, `shen_hedrick_elkins`, `polach`, `fastsim`, `table`.
     pub law: String,
     /// Elements along and across the ellipse, FASTSIM only.
     pub elements: [usize; 2],
@@ -191,7 +191,7 @@ pub struct CreepSpec {
 impl Default for CreepSpec {
     fn default() -> Self {
         Self {
-            law: "fastsim".into(),
+            law: "table".into(),
             elements: [10, 10],
             contact_dissipation: 3.0,
             blended: false,

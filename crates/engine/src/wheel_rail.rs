@@ -8,6 +8,7 @@ use crate::motion::Motion;
 use crate::rates::Workspace;
 use klingel_physics::Scalar;
 use klingel_physics::contact::RollingContact;
+use klingel_physics::contact::creep::CreepTable;
 use klingel_physics::math::Vec3;
 
 /// Speed v0 that keeps creepages finite at standstill \[m/s\].
@@ -33,6 +34,8 @@ pub struct WheelState<S> {
     /// Steepest patch above 1 kN \[rad\], and load of the most loaded patch over 15 degrees \[N\].
     pub contact_angle: f64,
     pub steep_force: f64,
+    /// Load of the patches so slender that the creep table does not hold their a/b \[N\].
+    pub slender_force: f64,
 }
 
 pub fn wheels<S: Scalar>(m: &Model, x: &[S], w: &mut Workspace<S>) -> Result<(), Fault> {
@@ -109,6 +112,9 @@ fn wheel_on_rail<S: Scalar>(
             state.t_gamma += (fx * xi).abs() + (fy * eta).abs();
             state.spin_work += (mz * phi).abs();
             report_angle(&mut state, patch.angle.value(), normal.value());
+            if !CreepTable::holds(patch.a.value() / patch.b.value()) {
+                state.slender_force += normal.value();
+            }
         }
     }
     Ok((state, moment_T))

@@ -1,5 +1,5 @@
 //! Cost of the creep forces of one contact patch: in partial slip, in adhesion and with derivatives.
-//! Run with `cargo bench -p klingel-physics --bench creep`; compare FASTSIM with Polach of the same run.
+//! Run with `cargo bench -p klingel-physics --bench creep`; compare the table and FASTSIM with Polach of the same run.
 
 use divan::{Bencher, black_box};
 use klingel_physics::contact::creep::{CreepOptions, Kalker, SlopeReduction};
@@ -10,10 +10,11 @@ fn main() {
     divan::main();
 }
 
-const LAWS: [&str; 8] = [
+const LAWS: [&str; 9] = [
     "linear",
     "shen_hedrick_elkins",
     "polach",
+    "table",
     "fastsim 10 x 10",
     "fastsim 10 x 10, blended",
     "fastsim 16 x 16",
@@ -55,6 +56,18 @@ fn adhesion(bencher: Bencher, name: &str) {
 fn partial_slip_dual(bencher: Bencher, name: &str) {
     let law = law(name);
     bencher.bench(|| law.force(&black_box(patch::<Dual<12>>(1e-3))));
+}
+
+/// Patches that follow each other like those of a vehicle's eight wheels: their places in a table lie apart.
+#[divan::bench(args = ["polach", "table", "fastsim 10 x 10, blended"])]
+fn eight_contacts(bencher: Bencher, name: &str) {
+    let law = law(name);
+    let patches: [RollingContact<f64>; 8] = core::array::from_fn(|i| {
+        let (side, slip) = (if i % 2 == 0 { 1.0 } else { -1.0 }, 1e-4 * (1.0 + i as f64));
+        let (xi, eta, phi) = (side * slip, -2.0 * slip, 0.1 * side + 50.0 * slip);
+        RollingContact { a: 5e-3 + 2e-4 * i as f64, b: 3e-3, normal_force: 5e4, friction: 0.3, xi, eta, phi }
+    });
+    bencher.bench(|| black_box(&patches).map(|c| law.force(&c)));
 }
 
 #[divan::bench]

@@ -4,8 +4,8 @@
 use crate::CoreError;
 use klingel_physics::contact::Material;
 use klingel_physics::contact::creep::{
-    CreepError, CreepForce, CreepLaw, CreepOptions, Exact, FallingFriction, PolachReduction, RollingContact,
-    SlopeReduction, exact_forces,
+    CreepError, CreepForce, CreepLaw, CreepOptions, CreepTable, Exact, FallingFriction, PolachReduction,
+    RollingContact, SlopeReduction, exact_forces,
 };
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -58,8 +58,13 @@ pub fn creep_force<'py>(
             .map_err(|(index, error)| CoreError::new_err((error.to_string(), index)))?
     } else {
         let law = CreepLaw::named(law, elements).ok_or_else(|| CoreError::new_err(format!("no creep law {law}")))?;
-        let law = CreepForce::with_options(law, options, &material).map_err(refused)?;
-        py.detach(|| patches(&slices, falling.as_ref()).with_min_len(LEAST_SHARE).map(|c| law.force(&c)).collect())
+        let force = CreepForce::with_options(law, options, &material).map_err(refused)?;
+        if law == CreepLaw::Table {
+            for (index, (a, b)) in core::iter::zip(slices[0], slices[1]).enumerate() {
+                CreepTable::check_ratio(a / b).map_err(|error| CoreError::new_err((error.to_string(), index)))?;
+            }
+        }
+        py.detach(|| patches(&slices, falling.as_ref()).with_min_len(LEAST_SHARE).map(|c| force.force(&c)).collect())
     };
     Ok([0, 1, 2].map(|k| forces.iter().map(|f| f[k]).collect::<Vec<f64>>().into_pyarray(py)))
 }

@@ -78,6 +78,8 @@ def run(
     path = save(result, out or scenario.with_suffix(".nc"), rate=rate)
     outcome = result.attrs["outcome"]
     typer.echo(f"{outcome}; {result.attrs['realtime_factor']:.1f} times real time; {path}")
+    if notes := result.attrs["notes"]:
+        typer.echo(notes)
     if outcome != COMPLETED:
         raise typer.Exit(1)
 

@@ -16,10 +16,8 @@ from klingel.errors import InputError, Problem, nearest
 Values = NDArray[np.float64]
 CreepLaw = Literal["linear", "shen_hedrick_elkins", "polach", "fastsim", "table", "exact"]
 
-ELEMENTS = (16, 16)
-"""Elements along and across the patch unless told otherwise."""
-DIVIDED = ("fastsim", "exact")
-"""Laws that divide the patch into elements."""
+ELEMENTS = {"fastsim": (16, 16), "exact": (40, 40)}
+"""Laws that divide the patch into elements; how many along and across unless told otherwise."""
 
 
 @overload
@@ -84,15 +82,16 @@ def creep_force(
     """Fx [N], Fy [N] and Mz [N m] on the wheel, in the contact plane (x forward, y right, z into the rail).
 
     law: `linear` (Kalker's, without a friction limit), `shen_hedrick_elkins` (for little spin), `polach` (closed form
-    with spin), `fastsim` (Kalker's simplified theory, the best of the simulator's) or `exact` (Kalker's full theory,
-    docs/theory/exact.md: the reference for the others, milliseconds a patch, on all cores); only `linear`, `fastsim`
-    and `exact` give a moment.
+    with spin), `fastsim` (Kalker's simplified theory), `table` (Kalker's full theory read from a table, the simulator's
+    unless told otherwise, docs/theory/creep_table.md) or `exact` (the full theory itself, docs/theory/exact.md: the
+    reference for the others, some 50 ms a patch, on all cores); `shen_hedrick_elkins` and `polach` give no moment.
     a, b: semi-axes along and across rolling [m]; xi, eta: longitudinal and lateral creepage; phi: spin [1/m];
     normal_force [N]; friction: coefficient; shear_modulus [Pa] and poisson of both bodies. Arrays are broadcast against
     each other; plain numbers alone give plain floats.
 
     Options (docs/theory/creep.md has the formulas):
-    elements: along and across, of `fastsim` up to 40 each and of `exact` 4 to 80; (16, 16) unless given
+    elements: along and across, of `fastsim` up to 40 each, (16, 16) unless given, and of `exact` 4 to 80, (40, 40)
+        unless given, as the table has been made
     blended: of `fastsim`, its three flexibilities blend into one as sliding sets in, which halves the error at no cost;
         True unless given, False is Kalker's original
     slope: of `fastsim`, (k0, alpha, beta) of Spiryagin's reduced initial slope
@@ -100,8 +99,9 @@ def creep_force(
     falling: of any law, (A, B [s/m]): friction mu0 ((1 - A) exp(-B w) + A) with mu0 = `friction`, at the slip velocity
         w = `speed` sqrt(xi^2 + eta^2)
     speed: of rolling [m/s], for `falling`
-    Errors: InputError with every problem of the numbers, for an unknown law or option, or, with the patch's index, for
-    a patch that `exact` has no solution for (a/b outside 0.02 to 50; no convergence, which has not been seen).
+    Errors: InputError with every problem of the numbers, for an unknown law or option, for `table` with another Poisson's
+    ratio than 0.28, or, with the patch's index, for a patch that `exact` has no solution for (a/b outside 0.02 to 50; no
+    convergence, which has not been seen) or that is not in the table (a/b outside 1/36 to 36).
 
     >>> steel = {"shear_modulus": 8.2e10, "poisson": 0.28}
     >>> patch = {"a": 6e-3, "b": 4e-3, "normal_force": 5e4, "friction": 0.3, **steel}
@@ -110,8 +110,10 @@ def creep_force(
     (-7549, 0, 0)
     >>> creep_force("polach", xi=[1e-3, 1e-2], eta=0.0, phi=0.0, **patch)[0].round()
     array([ -8074., -14947.])
-    >>> fx, _, _ = creep_force("exact", xi=1e-3, eta=0.0, phi=0.0, **patch)
-    >>> round(fx / 1e3, 1)
+    >>> for law in ("exact", "table"):
+    ...     fx, _, _ = creep_force(law, xi=1e-3, eta=0.0, phi=0.0, **patch)
+    ...     print(round(fx / 1e3, 1))
+    -7.8
     -7.8
     """
     options = {"slope": (slope, 3), "reduction": (reduction, 2), "falling": (falling, 2)}
@@ -153,7 +155,7 @@ def creep_force(
             [np.ascontiguousarray(values).reshape(-1) for values in broadcast],
             shear_modulus=float(shear_modulus),
             poisson=float(poisson),
-            elements=ELEMENTS if elements is None else elements,
+            elements=ELEMENTS.get(law, (1, 1)) if elements is None else elements,
             reduction=reduction,
             blended=law == "fastsim" if blended is None else blended,
             slope=slope,
@@ -172,8 +174,8 @@ def creep_force(
 def _law_problems(law: object, elements: object, blended: object) -> Iterator[Problem]:
     if law not in get_args(CreepLaw):
         yield Problem("law", law, "is not known", remedy=nearest(law, get_args(CreepLaw)))
-    elif elements is not None and law not in DIVIDED:
-        remedy = f"leave it out or choose {' or '.join(DIVIDED)}"
+    elif elements is not None and law not in ELEMENTS:
+        remedy = f"leave it out or choose {' or '.join(ELEMENTS)}"
         yield Problem("elements", elements, f"does not belong to {law}", remedy=remedy)
     if not _tuple(elements, 2, int, np.integer):
         yield Problem("elements", elements, "is no pair of whole numbers", remedy="give for example (16, 16)")

@@ -17,7 +17,7 @@ from klingel.track import Track
 from klingel.units import Quantity, to_si
 from klingel.vehicle import Vehicle
 
-CreepLaw = Literal["fastsim", "polach", "shen_hedrick_elkins", "linear"]
+CreepLaw = Literal["table", "fastsim", "polach", "shen_hedrick_elkins", "linear"]
 Contact = Literal["hertz", "kik_piotrowski"]
 
 ELEMENTS_MIN, ELEMENTS_MAX = 2, 40
@@ -80,7 +80,7 @@ class Scenario:
         control: Strategy | None = None,
         friction: Quantity = 0.35,
         contact: Contact = "hertz",
-        creep_law: CreepLaw = "fastsim",
+        creep_law: CreepLaw = "table",
         creep_elements: tuple[int, int] = (10, 10),
         creep_options: CreepOptions = DRY_AND_CLEAN,
         wheel: Profile | None = None,

@@ -74,6 +74,25 @@ impl CreepTable {
         if same { Ok(()) } else { Err(out_of_range(what, poisson, [own, own], "choose fastsim for other materials")) }
     }
 
+    /// Refuses an ellipse beyond the table, for those who ask for numbers of the theory itself.
+    ///
+    /// # Errors
+    /// a/b outside `RATIOS`.
+    pub fn check_ratio(ratio: f64) -> Result<(), CreepError> {
+        let what = "ratio of the semi-axes a/b of the creep table";
+        if Self::holds(ratio) {
+            Ok(())
+        } else {
+            Err(out_of_range(what, ratio, Self::RATIOS, "choose exact or fastsim"))
+        }
+    }
+
+    /// Whether it holds ellipses of this a/b.
+    pub fn holds(ratio: f64) -> bool {
+        let [least, most] = Self::RATIOS;
+        (least * (1.0 - 1e-12)..=most * (1.0 + 1e-12)).contains(&ratio)
+    }
+
     /// What it was made of.
     pub fn provenance(&self) -> &Provenance {
         &self.provenance
