@@ -103,7 +103,10 @@ def _creep_table(root: Path | None) -> Finding:
     """The table of creep forces in the core, and whether it is that of the checkout."""
     from klingel.contact.table import creep_table, header
 
-    table = creep_table()
+    try:
+        table = creep_table()
+    except core().CoreError as error:
+        return Finding("creep table", str(error), False)
     text = f"{table}, SHA-256 {table.check_sum[:12]} right"
     if root is None:
         return Finding("creep table", text)

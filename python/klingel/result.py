@@ -51,7 +51,8 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, strict: bo
     progress: shared with whoever watches or cancels; strict: raise when the run did not complete.
     Returns a Dataset over `time` [s], one variable a channel with attribute `units`; attributes `spec` (JSON),
     `outcome` ("completed", or what happened where and when), `realtime_factor` (simulated over CPU seconds of the
-    stepping thread), `static_wheel_loads` (JSON, N), `notes` (what a reader should know, mostly nothing). Ctrl-C ends the run.
+    stepping thread), `static_wheel_loads` (JSON, N), `notes` (what a reader should know, mostly nothing). Ctrl-C ends
+    the run.
     Errors: SimulationError for a spec that the core refuses or has no equilibrium for, and if `strict` for a run that
     did not complete; RunCancelledError.
     """
@@ -135,8 +136,8 @@ def _notes(result: xr.Dataset, spec: Spec) -> Iterator[str]:
         place, when = np.unravel_index(np.argmax(forces), forces.shape)
         if (most := forces[place, when]) > 0.0:
             yield (
-                f"creep table: beyond its a/b of 1/36 to 36 in {(forces > 0.0).mean():.2%} of the samples of all wheels, "
-                f"with at most {most / 1e3:.2f} kN at {wheels[int(place)].removesuffix('.slender_force')} "
+                f"creep table: beyond its a/b of 1/36 to 36 in {(forces > 0.0).mean():.2%} of the samples of all "
+                f"wheels, with at most {most / 1e3:.2f} kN at {wheels[int(place)].removesuffix('.slender_force')} "
                 f"at {float(result.time[when]):.2f} s; there the shape of its end goes on"
             )
 

@@ -74,7 +74,7 @@ def test_the_study_is_three_vehicles_in_five_curves_and_variants():
 def test_scenarios_have_the_settings_of_the_study():
     by_name = {run.name: run.scenario() for run in study_runs([300.0])}
     irw = by_name["irw_like_R300"]
-    assert (irw.friction, irw.rail, irw.rail_inclination, irw.creep_law) == (0.35, "60E1", 0.025, "fastsim")
+    assert (irw.friction, irw.rail, irw.rail_inclination, irw.creep_law) == (0.35, "60E1", 0.025, "table")
     assert irw.control.curvature == "gyro"
     assert irw.step == 1e-3
     assert by_name["solid_like_R300"].step == 0.5e-3

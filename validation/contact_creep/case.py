@@ -1,5 +1,5 @@
 """Creep forces of an ellipse against the full theory: every law, every kind of creepage, round and slender patches.
-The exact law and its table against CONTACT; then FASTSIM and its modified form against CONTACT's own, creepage by creepage."""
+The exact law and its table against CONTACT; then FASTSIM and its modified form against CONTACT's own, row by row."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 //! `klingel contact-table` keeps the parts in files; which points they hold and what becomes of them is the core's.
 
 use crate::CoreError;
-use klingel_physics::contact::creep::{CreepError, CreepTable, Maker};
+use klingel_physics::contact::creep::{CREEP_TABLE, CreepError, CreepTable, Maker};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -77,10 +77,12 @@ fn rows(part: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<[f64; 3]>> {
 }
 
 /// What the table in this build was made of, its check sum found right: poisson, coarse and fine (elements),
-/// intervals, ratios (least and largest a/b), checksum, solver.
+/// intervals, ratios (least and largest a/b), checksum, solver, by_this_solver (whether its sources are those of this
+/// build).
 #[pyfunction]
 pub fn creep_table(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-    let provenance = CreepTable::built_in().provenance();
+    let table = CreepTable::from_bytes(CREEP_TABLE).map_err(refused)?;
+    let provenance = table.provenance();
     let info = PyDict::new(py);
     info.set_item("poisson", provenance.poisson)?;
     info.set_item("coarse", provenance.coarse)?;
@@ -89,6 +91,7 @@ pub fn creep_table(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     info.set_item("ratios", CreepTable::RATIOS)?;
     info.set_item("checksum", &provenance.checksum)?;
     info.set_item("solver", &provenance.solver)?;
+    info.set_item("by_this_solver", provenance.solver == Maker::solver())?;
     Ok(info)
 }
 

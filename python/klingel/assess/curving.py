@@ -73,6 +73,7 @@ class Assessment:
         flange_contact: `root` or `flange` if a patch steeper than 15 deg carried more than 1 kN for more than 0.1 s
             without a break, `flange` if it was steeper than 60 deg for as long; else empty.
         outcome: `completed`, or what ended the run, where and when.
+        notes: what a reader of the numbers should know, mostly nothing.
         realtime_factor: simulated seconds over CPU seconds of the stepping thread.
         wheelsets: the share of each wheelset, by name (not a column).
         after_curve_s: how much of the 3 s behind the curve the run covers for every wheelset (not a column).
@@ -98,6 +99,7 @@ class Assessment:
     spin_work_N: float
     flange_contact: str
     outcome: str
+    notes: str
     realtime_factor: float
     wheelsets: Mapping[str, WheelsetFigures]
     after_curve_s: float
@@ -225,6 +227,7 @@ def curving(result: xr.Dataset, *, vehicle: str | None = None) -> Assessment:
         spin_work_N=mean_in_arc("spin_work"),
         flange_contact=_flange_contact(run, header, windows),
         outcome=header.outcome,
+        notes=header.notes,
         realtime_factor=header.realtime_factor,
         wheelsets=shares,
         after_curve_s=min(run.after(wheelset.name, course) for wheelset in header.wheelsets),

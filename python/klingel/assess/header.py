@@ -75,6 +75,7 @@ class Header:
     Attributes:
         name: of the spec.
         outcome: "completed", or what happened, where and when.
+        notes: what a reader of the numbers should know, mostly nothing.
         realtime_factor: simulated seconds over CPU seconds of the stepping thread [-].
         mass: of the whole vehicle [kg].
         speed: that the run was asked for [m/s].
@@ -87,6 +88,7 @@ class Header:
 
     name: str
     outcome: str
+    notes: str
     realtime_factor: float
     mass: float
     speed: float
@@ -184,6 +186,7 @@ def header_of(result: xr.Dataset) -> Header:
     return Header(
         name=spec["name"],
         outcome=str(result.attrs["outcome"]),
+        notes=str(result.attrs.get("notes", "")),
         realtime_factor=float(result.attrs["realtime_factor"]),
         mass=float(sum(body["mass"] for body in spec["bodies"])),
         speed=float(spec["speed"]),

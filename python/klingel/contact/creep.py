@@ -99,9 +99,9 @@ def creep_force(
     falling: of any law, (A, B [s/m]): friction mu0 ((1 - A) exp(-B w) + A) with mu0 = `friction`, at the slip velocity
         w = `speed` sqrt(xi^2 + eta^2)
     speed: of rolling [m/s], for `falling`
-    Errors: InputError with every problem of the numbers, for an unknown law or option, for `table` with another Poisson's
-    ratio than 0.28, or, with the patch's index, for a patch that `exact` has no solution for (a/b outside 0.02 to 50; no
-    convergence, which has not been seen) or that is not in the table (a/b outside 1/36 to 36).
+    Errors: InputError with every problem of the numbers, for an unknown law or option, for `table` with another
+    Poisson's ratio than 0.28, or, with the patch's index, for a patch that `exact` has no solution for (a/b outside
+    0.02 to 50; no convergence, which has not been seen) or that is not in the table (a/b outside 1/36 to 36).
 
     >>> steel = {"shear_modulus": 8.2e10, "poisson": 0.28}
     >>> patch = {"a": 6e-3, "b": 4e-3, "normal_force": 5e4, "friction": 0.3, **steel}

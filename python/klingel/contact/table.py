@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 HALF_WAY = 1.5
-"""Size of scaled creepages half way to full sliding, m0 of the theory."""
+"""Size of scaled creepages that half of the random points exceed, about half way to full sliding."""
 COLUMNS = ("ratio", "xi", "eta", "phi", "fx", "fy", "mz", "fx_exact", "fy_exact", "mz_exact")
 
 
@@ -25,7 +25,7 @@ class CreepTable:
 
     ratios: least and largest a/b; poisson: of both bodies; elements: of a patch, along and across rolling; intervals:
     of the three creepages, from none to full sliding, and of a/b; check_sum: SHA-256 of its numbers; solver: SHA-256 of
-    the sources that made it.
+    the solver's sources that made it; by_this_solver: whether they are those of this build.
 
     >>> table = creep_table()
     >>> table.poisson, len(table.check_sum)
@@ -38,6 +38,7 @@ class CreepTable:
     intervals: tuple[int, int, int, int]
     check_sum: str
     solver: str
+    by_this_solver: bool
 
     def __str__(self) -> str:
         along, across = self.elements
@@ -56,6 +57,7 @@ def creep_table() -> CreepTable:
         intervals=tuple(info["intervals"]),
         check_sum=info["checksum"],
         solver=info["solver"],
+        by_this_solver=info["by_this_solver"],
     )
 
 

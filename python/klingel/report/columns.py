@@ -43,6 +43,7 @@ HEADINGS: Mapping[str, Heading] = {
         "a patch steeper than 15° carried more than 1 kN for more than 0.1 s: root, or flange above 60°",
     ),
     "outcome": Heading("outcome", "", 0, "completed, or what ended the run, where and when"),
+    "notes": Heading("notes", "", 0, "what a reader of the numbers should know"),
     "realtime_factor": Heading("× real time", "", 1, "simulated seconds over CPU seconds of the stepping thread"),
 }
 """Heading of every column of the summary, in its order."""

@@ -154,7 +154,6 @@ def write_report(
 
 
 def _method(scenario: Scenario, asked: int, made: int) -> dict[str, str]:
-    elements = " by ".join(str(n) for n in scenario.creep_elements)
     rail = scenario.rail if isinstance(scenario.rail, str) else scenario.rail.name
     return {
         "Runs": f"{made} of {asked}",
@@ -162,13 +161,22 @@ def _method(scenario: Scenario, asked: int, made: int) -> dict[str, str]:
         "curvature and cant; R = 500 and 1200 m and the cant are inferred, they reproduce all five speeds of the paper",
         "Track": "smooth and rigid",
         "Profiles": f"S1002 on {rail} at 1:{1.0 / scenario.rail_inclination:.0f}, gauge {1e3 * scenario.gauge:.0f} mm",
-        "Contact": f"elastic, tabulated over shift and roll; creep forces by {scenario.creep_law.upper()} "
-        f"with blended flexibility, {elements} elements, one coefficient of friction, {FRICTION:.2f} in the main runs",
+        "Contact": f"elastic, tabulated over shift and roll; creep forces by {_creep(scenario)}, one "
+        f"coefficient of friction, {FRICTION:.2f} in the main runs",
         "Integration": f"step {1e3 * STEP['passive']:g} ms, in the main runs of solid_like "
         f"{1e3 * STEP['solid_like']:g} ms; controllers sampled at 1 kHz; runs start from the static "
         "equilibrium",
         "Speed": "held by a slow ideal force on the body; the motors of the active vehicles give the torque of Table 1",
     }
+
+
+def _creep(scenario: Scenario) -> str:
+    """The creep law in words."""
+    if scenario.creep_law == "table":
+        return "exact theory (steady rolling), from a table"
+    elements = " by ".join(str(n) for n in scenario.creep_elements)
+    grid = f" with blended flexibility, {elements} elements" if scenario.creep_law == "fastsim" else ""
+    return f"{scenario.creep_law.upper()}{grid}"
 
 
 def show(

@@ -21,7 +21,7 @@ pub use exact::{Exact, ExactSolution, exact_force, exact_forces};
 pub use fastsim::MOST_ELEMENTS;
 pub use kalker::Kalker;
 pub use options::{CreepOptions, FallingFriction, PolachReduction, SlopeReduction};
-pub use table::{CreepTable, Maker, Provenance};
+pub use table::{CREEP_TABLE, CreepTable, Maker, Provenance};
 
 use super::Material;
 use crate::{Dual, Scalar};

@@ -4,8 +4,6 @@
 use super::super::kalker::Kalker;
 use crate::{Mask, Scalar};
 
-/// m0 of u = v/(m0 + |v|): creepages of that size lie half way to full sliding.
-pub(super) const KNEE: f64 = 1.5;
 /// Largest slenderness |q| of the table, a/b = 36.
 pub(super) const RIM: f64 = 5.0 / 7.0;
 /// Half the width of the limiter's bend, part of mu N.
@@ -40,10 +38,24 @@ pub(super) fn scales<S: Scalar>(kalker: &Kalker, ratio: S) -> [S; 3] {
     [c11, c22, spin.sqrt().sqrt()]
 }
 
-/// v = m0 u/(1 - |u|) of a place in the ball, the inverse of u = v/(m0 + |v|).
+/// u/w of the ball's place u = v (12 + 5 m)/(24 + 18 m + 5 m^2), m = |v|, for v = w stiffness/limit; `size` = |w|.
+///
+/// Along a creepage without spin u is v/2 (1 - m/3) for small m, as the force is, and 1 - |u| is 1.2/m for large ones.
+/// The limit stays in the numerator, so that no load is no trouble.
+pub(super) fn contraction<S: Scalar>(size: S, stiffness: S, limit: S) -> S {
+    let slip = size * stiffness;
+    let below = limit.square() * 24.0 + limit * slip * 18.0 + slip.square() * 5.0;
+    stiffness * (limit * 12.0 + slip * 5.0) / below
+}
+
+/// The creepage v of a place in the ball.
 pub(super) fn creepage(u: [f64; 3]) -> [f64; 3] {
-    let factor = KNEE / (1.0 - size(u));
-    u.map(|u| u * factor)
+    let t = size(u);
+    // 5 (1 - t) m^2 + (12 - 18 t) m = 24 t.
+    let (square, linear) = (5.0 * (1.0 - t), 12.0 - 18.0 * t);
+    let root = (linear * linear + 96.0 * t * square).sqrt();
+    let m_over_t = if linear > 0.0 { 48.0 / (linear + root) } else { (root - linear) / (2.0 * square * t) };
+    u.map(|u| u * m_over_t)
 }
 
 pub(super) fn size(u: [f64; 3]) -> f64 {

@@ -16,7 +16,7 @@ pub struct Provenance {
     /// Elements along and across at every node, and those of the correction.
     pub coarse: [usize; 2],
     pub fine: [usize; 2],
-    /// SHA-256 over the sources of the solver and of the maker, and over the numbers of the file.
+    /// SHA-256 over the sources of the solver (`Maker::solver`), and over the numbers of the file.
     pub solver: String,
     pub checksum: String,
     /// Intervals from the middle to the surface of the ball of creepages along each axis, and over the slenderness.

@@ -194,13 +194,19 @@ impl Ball {
     }
 }
 
-/// Coefficients along an open axis from the values at its nodes, with one straight step beyond either end.
+/// Coefficients along an open axis from the values at its nodes, three or more; one beyond either end, where the parabola
+/// of the last three values goes on (its coefficients are its values less an eighth of the second difference).
 pub(super) fn along(values: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    let beyond = |end: [f64; 3], before: [f64; 3]| core::array::from_fn(|k| 2.0 * end[k] - before[k]);
+    let beyond = |[end, before, third]: [[f64; 3]; 3]| {
+        core::array::from_fn(|k| {
+            let bend = end[k] - 2.0 * before[k] + third[k];
+            2.0 * end[k] - before[k] + bend - bend / 8.0
+        })
+    };
     let n = values.len();
-    let mut all = vec![beyond(values[0], values[1])];
+    let mut all = vec![beyond([values[0], values[1], values[2]])];
     all.extend(values);
-    all.push(beyond(values[n - 1], values[n - 2]));
+    all.push(beyond([values[n - 1], values[n - 2], values[n - 3]]));
     coefficients(&mut all);
     all
 }

@@ -43,10 +43,20 @@ impl Stencil {
     }
 }
 
-/// Stencils about a place of the positive quarter, and the signs of Fx and of Fy with Mz there.
+/// Stencils about a place of the positive quarter, the signs of Fx and of Fy with Mz there, and which are not nil by them.
 struct Place {
     stencils: [Stencil; 4],
     signs: [f64; 2],
+    present: [f64; 2],
+}
+
+impl Place {
+    /// Forces with their signs.
+    #[inline(always)]
+    fn turned(&self, f: [f64; 3]) -> [f64; 3] {
+        let ([along, across], [x, y]) = (self.signs, self.present);
+        [along * x * f[0], across * y * f[1], across * y * f[2]]
+    }
 }
 
 impl Spline {
@@ -99,21 +109,41 @@ impl Spline {
             Stencil::new(u3.abs() * n3 as f64, n3),
             self.slender(q),
         ];
-        Place { stencils, signs: [along, across] }
+        // A sum over mirror images is nil but for rounding where it turns its sign.
+        let present = [u1 != 0.0, u2 != 0.0 || u3 != 0.0].map(|there| f64::from(u8::from(there)));
+        Place { stencils, signs: [along, across], present }
     }
 
     #[inline]
     fn values(&self, x: [f64; 4]) -> [f64; 3] {
-        let Place { stencils: [a, b, c, d], signs: [along, across] } = self.place(x);
-        let row = self.rows([&a, &b, &c, &d], [&a.weight, &b.weight, &c.weight]);
-        let f = last(&row, &d.weight);
-        [along * f[0], across * f[1], across * f[2]]
+        #[cfg(target_arch = "x86_64")]
+        {
+            /// The same operations for wider registers; without fused operations the result is the same bitwise.
+            #[target_feature(enable = "avx2")]
+            fn wide(spline: &Spline, x: [f64; 4]) -> [f64; 3] {
+                spline.values_any(x)
+            }
+            if std::arch::is_x86_feature_detected!("avx2") {
+                // SAFETY: the feature was just found.
+                return unsafe { wide(self, x) };
+            }
+        }
+        self.values_any(x)
+    }
+
+    #[inline(always)]
+    fn values_any(&self, x: [f64; 4]) -> [f64; 3] {
+        let place = self.place(x);
+        let [a, b, c, d] = &place.stencils;
+        let row = self.rows([a, b, c, d], [&a.weight, &b.weight, &c.weight]);
+        place.turned(last(&row, &d.weight))
     }
 
     /// The values of `values`, bitwise, and their Jacobian.
     fn slopes(&self, x: [f64; 4]) -> ([f64; 3], [[f64; 4]; 3]) {
-        let Place { stencils: [a, b, c, d], signs: [along, across] } = self.place(x);
-        let all = [&a, &b, &c, &d];
+        let place = self.place(x);
+        let ([a, b, c, d], [along, across]) = (&place.stencils, place.signs);
+        let all = [a, b, c, d];
         let row = self.rows(all, [&a.weight, &b.weight, &c.weight]);
         let f = last(&row, &d.weight);
         let turned = [along, across, across];
@@ -124,49 +154,34 @@ impl Spline {
             last(&self.rows(all, [&a.weight, &b.weight, &c.slope]), &d.weight).map(|s| s * steps[2] * across),
             last(&row, &d.slope).map(|s| s * (self.intervals[3] as f64 / (2.0 * RIM))),
         ];
-        (
-            core::array::from_fn(|k| turned[k] * f[k]),
-            core::array::from_fn(|k| core::array::from_fn(|m| turned[k] * change[m][k])),
-        )
+        (place.turned(f), core::array::from_fn(|k| core::array::from_fn(|m| turned[k] * change[m][k])))
     }
 
     /// Three neighbours along the slenderness, each the sum over 27 nodes of the ball.
     #[inline(always)]
-    fn rows(&self, stencils: [&Stencil; 4], weights: [&[f64; 3]; 3]) -> [f64; ROW] {
-        #[cfg(target_arch = "x86_64")]
-        {
-            /// The same operations for wider registers; without fused operations the result is the same bitwise.
-            #[target_feature(enable = "avx2")]
-            fn wide(spline: &Spline, stencils: [&Stencil; 4], weights: [&[f64; 3]; 3]) -> [f64; ROW] {
-                spline.rows_any(stencils, weights)
-            }
-            if std::arch::is_x86_feature_detected!("avx2") {
-                // SAFETY: the feature was just found.
-                return unsafe { wide(self, stencils, weights) };
-            }
-        }
-        self.rows_any(stencils, weights)
-    }
-
-    #[inline(always)]
-    fn rows_any(&self, [a, b, c, d]: [&Stencil; 4], [u, v, w]: [&[f64; 3]; 3]) -> [f64; ROW] {
+    fn rows(&self, [a, b, c, d]: [&Stencil; 4], [u, v, w]: [&[f64; 3]; 3]) -> [f64; ROW] {
         let [_, l2, l3, lq] = Self::lengths(self.intervals);
         let step3 = lq * WIDTH;
         let step2 = l3 * step3;
         let step1 = l2 * step2;
         let first = a.first * step1 + b.first * step2 + c.first * step3 + d.first * WIDTH;
-        let mut sum = [0.0; ROW];
+        // A sum for each node of u3: one alone would be a chain of 27 additions, each waiting for the one before.
+        let mut sums = [[0.0; ROW]; 3];
         for (i, u) in u.iter().enumerate() {
             for (j, v) in v.iter().enumerate() {
-                let start = first + i * step1 + j * step2;
-                for (k, w) in w.iter().enumerate() {
-                    let weight = u * v * w;
+                let (plane, start) = (u * v, first + i * step1 + j * step2);
+                for (k, (sum, w)) in sums.iter_mut().zip(w).enumerate() {
+                    let weight = plane * w;
                     let row = &self.nodes[start + k * step3..][..ROW];
                     for (sum, &node) in sum.iter_mut().zip(row) {
                         *sum += weight * f64::from(node);
                     }
                 }
             }
+        }
+        let [mut sum, second, third] = sums;
+        for n in 0..ROW {
+            sum[n] = (sum[n] + second[n]) + third[n];
         }
         sum
     }

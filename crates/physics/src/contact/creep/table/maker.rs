@@ -9,8 +9,8 @@ use crate::contact::creep::{Exact, Kalker};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
-/// Sources that shape the numbers of a table.
-const SOURCES: [&str; 12] = [
+/// Sources that shape the forces at the nodes.
+const SOLVER: [&str; 9] = [
     include_str!("../exact/friction.rs"),
     include_str!("../exact/grid.rs"),
     include_str!("../exact/influence.rs"),
@@ -20,9 +20,6 @@ const SOURCES: [&str; 12] = [
     include_str!("../exact/products.rs"),
     include_str!("../kalker.rs"),
     include_str!("coordinates.rs"),
-    include_str!("file.rs"),
-    include_str!("fit.rs"),
-    include_str!("maker.rs"),
 ];
 
 /// Creepages that one part solves, with few elements and for the correction: some seconds either way.
@@ -79,8 +76,18 @@ impl Maker {
     /// Stands for everything that shapes the numbers: parts of an equal key belong together.
     pub fn key(&self) -> String {
         let mut hash = Sha256::new();
-        hash.update(format!("{} {:?} {:?}", self.poisson, self.elements, self.intervals));
-        hash.update(solver());
+        hash.update(format!("{} {:?} {:?} {SHARE:?}", self.poisson, self.elements, self.intervals));
+        for u in self.balls.iter().flat_map(Ball::places).flatten() {
+            hash.update(u.to_le_bytes());
+        }
+        hash.update(Self::solver());
+        hex(&hash.finalize())
+    }
+
+    /// SHA-256 over the sources of the solver, which the provenance of a table names.
+    pub fn solver() -> String {
+        let mut hash = Sha256::new();
+        SOLVER.iter().for_each(|source| hash.update(source));
         hex(&hash.finalize())
     }
 
@@ -165,7 +172,7 @@ impl Maker {
             (0..quarters[0].len()).flat_map(|node| along(&quarters.iter().map(|f| f[node]).collect::<Vec<_>>()));
         let scale = along(&(0..count).map(|q| self.scale(q)).collect::<Vec<_>>());
         let quarter = Quarter { intervals: self.intervals, scale, nodes: nodes.collect() };
-        Ok(file::write(&quarter, self.poisson, self.elements, &solver()))
+        Ok(file::write(&quarter, self.poisson, self.elements, &Self::solver()))
     }
 
     /// Coefficients over the ball at one slenderness.
@@ -199,11 +206,4 @@ impl Maker {
 /// Creepages without their scale.
 fn over(v: [f64; 3], scale: [f64; 3]) -> [f64; 3] {
     core::array::from_fn(|i| v[i] / scale[i])
-}
-
-/// SHA-256 over the sources.
-fn solver() -> String {
-    let mut hash = Sha256::new();
-    SOURCES.iter().for_each(|source| hash.update(source));
-    hex(&hash.finalize())
 }

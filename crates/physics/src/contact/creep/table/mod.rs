@@ -14,14 +14,14 @@ use super::kalker::Kalker;
 use super::polach::limit;
 use super::{CreepError, RollingContact};
 use crate::{Mask, Scalar};
-use coordinates::{RIM, inside, limited, scales, slenderness};
+use coordinates::{RIM, contraction, inside, limited, scales, slenderness};
 pub use file::Provenance;
 use lookup::Spline;
 pub use maker::Maker;
 use std::sync::OnceLock;
 
-/// The table in the package, made by `klingel contact-table`.
-const BUILT_IN: &[u8] = include_bytes!("../../../../data/creep_table.bin");
+/// The file of the table in the package, made by `klingel contact-table`.
+pub const CREEP_TABLE: &[u8] = include_bytes!("../../../../data/creep_table.bin");
 
 /// Creepages below this count as none, so that the size of the slip has a slope.
 const LEAST_CREEPAGE: f64 = 1e-14;
@@ -51,7 +51,7 @@ impl CreepTable {
     /// If what was compiled in is damaged, which a test excludes.
     pub fn built_in() -> &'static Self {
         static TABLE: OnceLock<CreepTable> = OnceLock::new();
-        TABLE.get_or_init(|| Self::from_bytes(BUILT_IN).expect("the table in the package is whole"))
+        TABLE.get_or_init(|| Self::from_bytes(CREEP_TABLE).expect("the table in the package is whole"))
     }
 
     /// A table from its file.
@@ -110,9 +110,8 @@ impl CreepTable {
         }
         let w = [scale[0] * c.xi, scale[1] * c.eta, scale[2] * c.phi * mean];
         let size = (w[0].square() + w[1].square() + w[2].square() + LEAST_CREEPAGE * LEAST_CREEPAGE).sqrt();
-        // u = v/(m0 + |v|) with v = w G a b/(mu N); so written, no load is no trouble.
-        let inverse = (limit / (mean * mean) * (coordinates::KNEE / shear_modulus) + size).recip();
-        let [fx, fy, mz] = self.spline.at([w[0] * inverse, w[1] * inverse, w[2] * inverse, q.clamp(-RIM, RIM)]);
+        let inward = contraction(size, mean * mean * shear_modulus, limit);
+        let [fx, fy, mz] = self.spline.at([w[0] * inward, w[1] * inward, w[2] * inward, q.clamp(-RIM, RIM)]);
         let [fx, fy] = limited([fx, fy]);
         [fx * limit, fy * limit, mz * limit * (c.a + c.b) * 0.5]
     }
