@@ -1,0 +1,28 @@
+"""The errors of the laws as a compact table for docs/theory/creep_table.md; a test holds the page to it.
+Print it: python -m validation.creep_laws.summary"""
+
+from __future__ import annotations
+
+from validation.creep_curves.laws import LAWS
+from validation.creep_laws.case import BANDS, bands
+from validation.creep_table.points import points
+from validation.exact_theory.scaled import off, rms
+
+
+def summary() -> str:
+    """Root mean square and largest |dF| in percent of mu N of each law, over all points and in each band of a/b."""
+    rows = points()
+    parts = {"all": slice(None)} | bands(rows)
+    lines = [
+        "| law | all | " + " | ".join(f"a/b {name}" for name, _, _ in BANDS) + " |",
+        "|---" * (len(parts) + 1) + "|",
+    ]
+    for law, label, options, _, _ in LAWS:
+        error = 100 * off(rows, law, **options)
+        cells = (f"{rms(error[part]):.2g}, {error[part].max():.2g}" for part in parts.values())
+        lines.append(f"| {label} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    print(summary())
