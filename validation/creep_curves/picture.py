@@ -8,17 +8,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from klingel.plot.style import INK, styled
-from validation.creep_curves.curves import CURVES, FILE, HALF, LAST, RATIOS, Curve
+from validation.creep_curves.curves import CURVES, FILE, LAST, RATIOS, Curve
 from validation.creep_curves.laws import LAWS, MOMENT_LAWS
-from validation.exact_theory.scaled import FORCES, forces, read
+from validation.exact_theory.scaled import FORCES, HALF, forces, read
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-PANELS = (("xi", "fx"), ("eta", "fy"), ("phi", "fy"), ("phi", "mz"))
-PANELS += (("eta at spin", "fy"), ("xi at spin", "fx"), ("xi at spin", "fy"))
+PANELS = (
+    ("xi", "fx"),
+    ("eta", "fy"),
+    ("phi", "fy"),
+    ("phi", "mz"),
+    ("eta at spin", "fy"),
+    ("xi at spin", "fx"),
+    ("xi at spin", "fy"),
+)
 """Curve and force of each row of the picture."""
 ORDINATE = {"fx": "Fx/(μN)", "fy": "Fy/(μN)", "mz": "Mz/(μN c)"}
 ABSCISSA = ("longitudinal  S₁ξ*", "lateral  S₂η*", "spin  S₃φ*")

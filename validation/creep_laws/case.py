@@ -6,12 +6,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from validation.common import Row
 from validation.creep_curves.laws import LAWS
 from validation.creep_table.points import COUNT, points
-from validation.exact_theory.scaled import Values, off, rms
+from validation.exact_theory.scaled import off, rms
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -50,7 +52,7 @@ def run() -> Iterator[Row]:
         yield Row.shown(f"{label}, largest", "exact 40 x 40", float(error.max()))
 
 
-def bands(rows: pd.DataFrame) -> dict[str, Values]:
+def bands(rows: pd.DataFrame) -> dict[str, NDArray[np.bool_]]:
     """Which rows lie in each band of a/b."""
     return {name: ((rows["aob"] > low) & (rows["aob"] <= high)).to_numpy() for name, low, high in BANDS}
 

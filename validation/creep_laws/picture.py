@@ -3,7 +3,7 @@ All ordinates are logarithmic: the laws differ by orders of magnitude."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -58,9 +58,9 @@ LIFTS: Values = np.degrees(np.arcsin(np.linspace(0.0, 1.0, 11)))
 """Edges of the bands of the spin's angle: equally many points in each."""
 
 
-def _binned(axis: Axes, middles: Values, edges: Values, x: Values, error: Values, color: str, line: object) -> None:
+def _binned(axis: Axes, middles: Values, edges: Values, x: Values, error: Values, color: str, line: Any) -> None:
     inside = np.clip(np.digitize(x, edges) - 1, 0, len(middles) - 1)
-    axis.semilogy(middles, [rms(error[inside == k]) for k in range(len(middles))], color=color, ls=line, lw=1.4)  # type: ignore[arg-type]
+    axis.semilogy(middles, [rms(error[inside == k]) for k in range(len(middles))], color=color, ls=line, lw=1.4)
 
 
 def _finish(over_ratio: Axes, over_size: Axes, over_lift: Axes, share: Axes) -> None:

@@ -20,12 +20,13 @@ if TYPE_CHECKING:
 
 TITLE = "Table of creep forces: exact theory"
 ABOUT = f"""
-The {COUNT} random creepages of the case of the laws, now for the table alone: ln(a/b) uniform from 1/36 to 36, directions
-of the scaled creepage uniform, its size from rest to full sliding (seed and all in exact.csv). Reference: the solver
-that the table is made with, on its 40 x 40 elements, some points solved again here; so this is the error of the table
-itself, and the solver's distance from the limit of fine grids comes on top (case of grid convergence). CONTACT's rows
-are those of the case of creep forces. Limits are what was asked of the table: 0.5 % of mu N (root mean square) and
-2 % (largest); that no force exceeds mu N, that mirror images agree to the last bit. Moments are over mu N sqrt(ab).
+The {COUNT} random creepages of the case of the laws, now for the table alone: ln(a/b) uniform from 1/36 to 36,
+directions of the scaled creepage uniform, its size from rest to full sliding (seed and all in exact.csv). Reference:
+the solver that the table is made with, on its 40 x 40 elements, some points solved again here; so this is the error of
+the table itself, and the solver's distance from the limit of fine grids comes on top (case of grid convergence).
+CONTACT's rows are those of the case of creep forces. Limits are what was asked of the table: 0.5 % of mu N (root mean
+square) and 2 % (largest); that no force exceeds mu N, that mirror images agree to the last bit. Moments are over
+mu N sqrt(ab).
 """
 
 RMS_LIMIT, MOST = 0.005, 0.02

@@ -14,6 +14,7 @@ from validation.exact_theory.case import (
     contact_coefficients,
     contact_error,
     grid_error,
+    kept_coefficients,
 )
 from validation.exact_theory.references import DATA, GRIDS, RATIOS, creepages
 from validation.exact_theory.scaled import read, rms
@@ -48,16 +49,15 @@ def drawn() -> Figure:
 
 
 def _coefficients(axis: Axes, ratio: float) -> None:
-    kept, limit = read(DATA / "coefficients.csv"), coefficient_limit(ratio)
-    kept, theirs = kept[kept["aob"] == ratio], contact_coefficients().loc[ratio]
+    kept, limit, size = kept_coefficients(ratio), coefficient_limit(ratio), 1 / np.array(GRIDS)
+    theirs, error = contact_coefficients(ratio)
     for i, (name, (color, mark, line)) in enumerate(zip(NAMES, LOOKS, strict=True)):
-        off = 100 * (kept[name] / limit[name] - 1)
-        axis.plot([0.0, *1 / kept["n"][::-1]], [0.0, *off[::-1]], color=color, ls=line, lw=1.2)
-        axis.plot(1 / kept["n"], off, mark, color=color, ms=4.5, label=name)
-        value, error = 100 * (theirs[name] / limit[name] - 1), 100 * theirs[f"{name}_se"] / limit[name]
-        label = "CONTACT's limit" if i == 2 else None
-        place = 0.002 * (i - 3)
-        axis.errorbar(place, value, error, fmt=mark, color=color, mfc="none", ms=4.5, lw=0.8, label=label)
+        off = 100 * (kept[:, i] / limit[i] - 1)
+        axis.plot([*size, 0.0], [*off, 0.0], color=color, ls=line, lw=1.2)
+        axis.plot(size, off, mark, color=color, ms=4.5, label=name)
+        value, deviation = 100 * (theirs[i] / limit[i] - 1), 100 * error[i] / limit[i]
+        label, beside = "CONTACT's limit" if name == "C23" else None, 0.002 * (i - 3)
+        axis.errorbar(beside, value, deviation, fmt=mark, color=color, mfc="none", ms=4.5, lw=0.8, label=label)
     axis.axhline(0.0, color=INK, lw=0.6)
     axis.set_xticks([0.0, *(1 / n for n in GRIDS)], ["0", *(f"1/{n}" if n < 80 else "" for n in GRIDS)])
     axis.tick_params(axis="x", labelsize=7.5)

@@ -26,8 +26,8 @@ MADE = (
 def creepages() -> pd.DataFrame:
     """Every fifth creepage of `contact_creep` without units, and CONTACT's forces (40 x 40) where there are any."""
     rows = references()
-    rows = rows[rows["aob"].isin(RATIOS)].groupby("aob").nth(slice(0, None, SHARE))
-    rows = rows.sort_values("aob", kind="stable", ignore_index=True)
+    rows = rows[rows["aob"].isin(RATIOS)]
+    rows = rows[rows.groupby("aob").cumcount() % SHARE == 0].sort_values("aob", kind="stable", ignore_index=True)
     unit = STEEL["shear_modulus"] * rows["a"] * rows["b"] / (rows["mu"] * rows["FN_N"])
     out = rows[["aob", "kind"]].assign(xi=unit * rows["xi"], eta=unit * rows["eta"])
     out = out.assign(phi=unit * (rows["a"] * rows["b"]) ** 0.5 * rows["phi"]).round(6)

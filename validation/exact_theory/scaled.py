@@ -59,7 +59,7 @@ def forces(law: str, ratio: ArrayLike, creepage: Iterable[ArrayLike], **options:
 
 
 def solved(rows: pd.DataFrame, elements: tuple[int, int] = REFERENCE) -> pd.DataFrame:
-    """The rows (aob, xi, eta, phi: without units) with fx, fy and mz of the exact theory, rounded to the file's digits."""
+    """The rows (aob, xi, eta, phi: without units) with fx, fy and mz of the exact theory in the file's digits."""
     found = forces("exact", rows["aob"], (rows["xi"], rows["eta"], rows["phi"]), elements=elements)
     return rows.assign(**{name: force.round(DIGITS) + 0.0 for name, force in zip(FORCES, found, strict=True)})
 
