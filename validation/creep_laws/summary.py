@@ -19,9 +19,14 @@ def summary() -> str:
     ]
     for law, label, options, _, _ in LAWS:
         error = 100 * off(rows, law, **options)
-        cells = (f"{rms(error[part]):.2g}, {error[part].max():.2g}" for part in parts.values())
+        cells = (f"{_short(rms(error[part]))}, {_short(error[part].max())}" for part in parts.values())
         lines.append(f"| {label} | " + " | ".join(cells) + " |")
     return "\n".join(lines)
+
+
+def _short(percent: float) -> str:
+    """Two digits, none of them behind the point of a large number."""
+    return f"{percent:.0f}" if percent >= 10 else f"{percent:.2g}"
 
 
 if __name__ == "__main__":
