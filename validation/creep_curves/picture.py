@@ -68,7 +68,7 @@ def _panel(axis: Axes, curve: Curve, ratio: float, force: str, exact: pd.DataFra
         if force == "mz" and law not in MOMENT_LAWS:
             continue
         found = forces(law, ratio, curve.creepage(ratio, t), **options)
-        axis.plot(t, found[place], color=color, ls=line, lw=1.4, label=label)
+        axis.plot(t, found[place], color=color, ls=line, lw=0.8 if law == "table" else 1.4, label=label)
     axis.plot(exact["t"], exact[force], "o", color=INK, mfc="none", ms=3.2, mew=0.8, label="exact, 40 × 40")
     ticks = np.array(TICKS_BOTH if curve.both else TICKS)
     axis.set_xticks(ticks / (HALF + np.abs(ticks)), [f"{tick:g}" for tick in ticks])
