@@ -1,5 +1,5 @@
 """The picture of the case: every law along every curve, the exact theory's points upon them.
-The abscissa is compressed as the table's coordinates are, so that rest and full sliding are both in sight."""
+The abscissa is compressed, v/(1.5 + |v|), so that rest and full sliding are both in sight."""
 
 from __future__ import annotations
 

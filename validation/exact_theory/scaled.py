@@ -25,7 +25,7 @@ LIMIT = 0.3 * 80e3
 REFERENCE = (40, 40)
 """Elements of the reference, CONTACT's customary grid."""
 HALF = 1.5
-"""|v| at half way from rest to full sliding on the compressed axis, as in the table of creep forces."""
+"""|v| at half way from rest to full sliding on the compressed axis v/(1.5 + |v|) of pictures and random points."""
 
 
 def scales(ratio: ArrayLike) -> tuple[Values, Values, Values]:
