@@ -1,0 +1,1 @@
+"""How much each creep force law errs against the exact theory."""

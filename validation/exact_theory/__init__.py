@@ -1,0 +1,1 @@
+"""The exact theory itself: its grid convergence, and its creepages without units."""
