@@ -10,7 +10,7 @@ use klingel_physics::{Dual, Scalar};
 
 #[test]
 fn dual_rates_are_the_plain_rates_bit_by_bit() {
-    for law in ["linear", "polach", "fastsim"] {
+    for law in ["linear", "polach", "fastsim", "table"] {
         let mut plant = Plant::new(&bogie(law, 1.0));
         let middle = plant.equilibrium();
         let mut random = Random(3);
@@ -31,7 +31,7 @@ fn dual_rates_are_the_plain_rates_bit_by_bit() {
 /// Central differences with a step to each state's scale; 1e-5 of the column's largest slope covers their own error.
 #[test]
 fn dual_slopes_are_difference_quotients() {
-    for law in ["linear", "polach"] {
+    for law in ["linear", "polach", "table"] {
         let mut plant = Plant::new(&bogie(law, 1.0));
         let middle = plant.equilibrium();
         let mut random = Random(11);

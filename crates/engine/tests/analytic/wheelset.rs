@@ -45,7 +45,7 @@ fn klingels_wave_has_its_length() {
     let (b, r0) = contacts(&Plant::new(&case));
     let conicity = CONE * (1.0 + RAIL * CONE / b);
     let expected = 2.0 * core::f64::consts::PI * (b * r0 / conicity).sqrt();
-    for law in ["linear", "fastsim"] {
+    for law in ["linear", "fastsim", "table"] {
         case["creep"]["law"] = json!(law);
         let series = run(&case);
         let (s, y) = (channel(&series, "wheelset.s"), channel(&series, "wheelset.y"));
