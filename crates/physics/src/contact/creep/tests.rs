@@ -240,8 +240,11 @@ fn vanishing_creepage_gives_the_linear_law() {
         for (xi, eta, phi) in [(1e-7, 0.0, 0.0), (0.0, 1e-7, 0.0), (0.0, 0.0, 1e-5)] {
             let patch = RollingContact { xi, eta, phi, ..patches()[0] };
             let ([fx, fy, _], [lx, ly, _]) = (law.force(&patch), linear.force(&patch));
-            // Strips miss 1/(2 ny^2) of the ellipse and 1/nx^2 of the spin's parabola: at most 2.2 % on these grids.
-            assert!((fx - lx).abs() < 0.022 * lx.abs() + 1e-9 && (fy - ly).abs() < 0.022 * ly.abs() + 1e-9, "{kind:?}");
+            // Strips miss 1/(2 ny^2) of the ellipse and 1/nx^2 of the spin's parabola: at most 2.2 % on these grids. The
+            // table has the mean slope over half a step, and C23 of 40 x 40 elements is 2 % above the limit of fine grids.
+            let most = if kind.0 == CreepLaw::Table { 0.05 } else { 0.022 };
+            let near = |f: f64, l: f64| (f - l).abs() < most * l.abs() + 1e-9;
+            assert!(near(fx, lx) && near(fy, ly), "{kind:?} {xi} {eta} {phi}: {fx} {fy} for {lx} {ly}");
         }
     }
     // C23 couples both ways: the moment of lateral creepage and the force of spin share one coefficient.
