@@ -53,7 +53,7 @@ def drawn() -> Figure:
             axis.set_xticks([1 / 36, 0.1, 0.3, 1, 3, 10, 36], ["1/36", "0.1", "0.3", "1", "3", "10", "36"])
             axis.minorticks_off()
             axis.set_xlabel("a/b")
-        force.legend(loc="lower center", ncol=2, fontsize=7.5)
+        force.legend(loc="lower center", ncol=2, fontsize=7, handlelength=1.6, columnspacing=0.8)
     return figure
 
 
