@@ -11,9 +11,9 @@ pub(super) const BEND: f64 = 0.01;
 /// What rounding could add to a force at the limit.
 const ROUNDING: f64 = 1e-15;
 
-/// q = (sqrt a - sqrt b)/(sqrt a + sqrt b), from -1 to 1.
-pub(super) fn slenderness<S: Scalar>(root_a: S, root_b: S) -> S {
-    (root_a - root_b) / (root_a + root_b)
+/// q = (sqrt a - sqrt b)/(sqrt a + sqrt b), from -1 to 1; multiplied by the denominator it needs one root.
+pub(super) fn slenderness<S: Scalar>(a: S, b: S) -> S {
+    (a - b) / (a + b + (a * b).sqrt() * 2.0)
 }
 
 /// a/b of a slenderness.

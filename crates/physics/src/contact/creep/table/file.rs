@@ -2,7 +2,7 @@
 //! Each coefficient takes two bytes; the header tells what they are worth, how they were made and their check sum.
 
 use super::CreepError;
-use super::lookup::{Spline, WIDTH};
+use super::lookup::{ROW, Spline};
 use sha2::{Digest, Sha256};
 
 const TITLE: &str = "klingel creep table 1";
@@ -100,15 +100,17 @@ fn spline(intervals: [usize; 4], unit: [f64; 3], numbers: &[u8]) -> Result<Splin
     };
     // One node before u1 = 0 and one before u3 = 0 repeat those behind, with the signs of their mirror images.
     let [m1, m2, m3, mq] = Spline::lengths(intervals);
-    let mut all = Vec::with_capacity(m1 * m2 * m3 * mq * WIDTH);
-    for (i, along) in mirrored(m1) {
-        for j in 0..m2 {
-            for (k, across) in mirrored(m3) {
-                let j = if across < 0.0 { m2 - 1 - j } else { j };
-                for q in 0..mq {
-                    all.push((along * stored(i, j, k, q, 0)) as f32);
-                    all.extend([1, 2].map(|force| (across * stored(i, j, k, q, force)) as f32));
-                    all.push(0.0);
+    let mut all = Vec::with_capacity((mq - 2) * m1 * m2 * m3 * ROW);
+    for first in 0..mq - 2 {
+        for (i, along) in mirrored(m1) {
+            for j in 0..m2 {
+                for (k, across) in mirrored(m3) {
+                    let j = if across < 0.0 { m2 - 1 - j } else { j };
+                    for q in first..first + 3 {
+                        all.push((along * stored(i, j, k, q, 0)) as f32);
+                        all.extend([1, 2].map(|force| (across * stored(i, j, k, q, force)) as f32));
+                        all.push(0.0);
+                    }
                 }
             }
         }

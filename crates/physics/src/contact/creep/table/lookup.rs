@@ -5,17 +5,19 @@ use super::coordinates::RIM;
 use crate::Scalar;
 
 /// Numbers a node: three forces and one to fill the registers.
-pub(super) const WIDTH: usize = 4;
+const WIDTH: usize = 4;
 /// Numbers that three neighbours along the slenderness take.
-const ROW: usize = 3 * WIDTH;
+pub(super) const ROW: usize = 3 * WIDTH;
 
 /// Coefficients, with one node beyond either end of each axis.
 pub(super) struct Spline {
     /// Intervals from the middle of the ball to its surface, and over the whole slenderness.
     pub intervals: [usize; 4],
-    /// Factors of the creepages, coefficients along the slenderness.
+    /// Bounded factors of the creepages, coefficients along the slenderness.
     pub scale: Vec<[f64; 3]>,
-    /// Over u1 from -1 step, u2 from -1 - step, u3 from -1 step, q from -RIM - step, then forces.
+    /// For each step of q, over u1 from -1 step, u2 from -1 - step and u3 from -1 step, the rows of its three neighbours.
+    ///
+    /// So every number is there three times, but what one contact reads lies in a few pages of memory, not in dozens.
     pub nodes: Vec<f32>,
 }
 
@@ -25,21 +27,42 @@ impl core::fmt::Debug for Spline {
     }
 }
 
-/// The three nodes about a place, their weights and the weights' slopes over the place counted in steps.
+/// What the spline holds of the creepages' factors: S1 b/(a + b), S2 b/(a + b), S3 b c/(a + b)^2 with c = sqrt(ab).
+///
+/// The factors themselves rise towards slender ellipses faster than a spline can follow.
+pub(super) fn bounded<S: Scalar>([s1, s2, s3]: [S; 3], ratio: S) -> [S; 3] {
+    let share = (S::one() + ratio).recip();
+    [s1 * share, s2 * share, s3 * share.square() * ratio.sqrt()]
+}
+
+/// The three nodes about a place: the first of them, and how far in steps the place lies behind the middle one.
+#[derive(Clone, Copy)]
 struct Stencil {
     first: usize,
-    weight: [f64; 3],
-    slope: [f64; 3],
+    off: f64,
 }
+
+/// 1.5 * 2^52: added to a small number, it leaves the nearest whole one in the last bits, sooner than a conversion would.
+const WHOLE: f64 = 6_755_399_441_055_744.0;
 
 impl Stencil {
     /// `place` in steps from the second node of the axis, not negative.
     #[inline(always)]
     fn new(place: f64, last: usize) -> Self {
-        let nearest = ((place + 0.5) as usize).min(last);
-        let f = place - nearest as f64;
-        let (l, r) = (0.5 - f, 0.5 + f);
-        Self { first: nearest, weight: [0.5 * l * l, 0.75 - f * f, 0.5 * r * r], slope: [-l, -2.0 * f, r] }
+        let shifted = place + WHOLE;
+        Self { first: (shifted.to_bits() as u32 as usize).min(last), off: place - (shifted - WHOLE) }
+    }
+
+    #[inline(always)]
+    fn weights(self) -> [f64; 3] {
+        let (l, r) = (0.5 - self.off, 0.5 + self.off);
+        [0.5 * l * l, 0.75 - self.off * self.off, 0.5 * r * r]
+    }
+
+    /// Slopes of the weights over the place counted in steps.
+    #[inline(always)]
+    fn slopes(self) -> [f64; 3] {
+        [self.off - 0.5, -2.0 * self.off, self.off + 0.5]
     }
 }
 
@@ -71,7 +94,7 @@ impl Spline {
         Stencil::new((q + RIM) * (n as f64 / (2.0 * RIM)), n)
     }
 
-    /// Factors of the creepages at a slenderness within the table.
+    /// Bounded factors of the creepages at a slenderness within the table.
     #[inline]
     pub fn scales<S: Scalar>(&self, q: S) -> [S; 3] {
         let sum = |first: usize, w: &[f64; 3]| -> [f64; 3] {
@@ -82,11 +105,11 @@ impl Spline {
             [q],
             |[q]| {
                 let s = self.slender(q);
-                sum(s.first, &s.weight)
+                sum(s.first, &s.weights())
             },
             |[q]| {
                 let (s, steps) = (self.slender(q), self.intervals[3] as f64 / (2.0 * RIM));
-                (sum(s.first, &s.weight), sum(s.first, &s.slope).map(|slope| [slope * steps]))
+                (sum(s.first, &s.weights()), sum(s.first, &s.slopes()).map(|slope| [slope * steps]))
             },
         )
     }
@@ -116,75 +139,94 @@ impl Spline {
 
     #[inline]
     fn values(&self, x: [f64; 4]) -> [f64; 3] {
-        #[cfg(target_arch = "x86_64")]
-        {
-            /// The same operations for wider registers; without fused operations the result is the same bitwise.
-            #[target_feature(enable = "avx2")]
-            fn wide(spline: &Spline, x: [f64; 4]) -> [f64; 3] {
-                spline.values_any(x)
-            }
-            if std::arch::is_x86_feature_detected!("avx2") {
-                // SAFETY: the feature was just found.
-                return unsafe { wide(self, x) };
-            }
-        }
-        self.values_any(x)
-    }
-
-    #[inline(always)]
-    fn values_any(&self, x: [f64; 4]) -> [f64; 3] {
         let place = self.place(x);
-        let [a, b, c, d] = &place.stencils;
-        let row = self.rows([a, b, c, d], [&a.weight, &b.weight, &c.weight]);
-        place.turned(last(&row, &d.weight))
+        let [a, b, c, d] = place.stencils;
+        let row = self.rows(place.stencils, [a.weights(), b.weights(), c.weights()]);
+        place.turned(last(&row, &d.weights()))
     }
 
     /// The values of `values`, bitwise, and their Jacobian.
     fn slopes(&self, x: [f64; 4]) -> ([f64; 3], [[f64; 4]; 3]) {
         let place = self.place(x);
-        let ([a, b, c, d], [along, across]) = (&place.stencils, place.signs);
-        let all = [a, b, c, d];
-        let row = self.rows(all, [&a.weight, &b.weight, &c.weight]);
-        let f = last(&row, &d.weight);
+        let (all, [along, across]) = (place.stencils, place.signs);
+        let ([a, b, c, d], [da, db, dc, dd]) = (all.map(Stencil::weights), all.map(Stencil::slopes));
+        let row = self.rows(all, [a, b, c]);
         let turned = [along, across, across];
-        let steps = [self.intervals[0], self.intervals[1], self.intervals[2]].map(|n| n as f64);
+        let steps = self.intervals.map(|n| n as f64);
         let change = [
-            last(&self.rows(all, [&a.slope, &b.weight, &c.weight]), &d.weight).map(|s| s * steps[0] * along),
-            last(&self.rows(all, [&a.weight, &b.slope, &c.weight]), &d.weight).map(|s| s * steps[1] * across),
-            last(&self.rows(all, [&a.weight, &b.weight, &c.slope]), &d.weight).map(|s| s * steps[2] * across),
-            last(&row, &d.slope).map(|s| s * (self.intervals[3] as f64 / (2.0 * RIM))),
+            last(&self.rows(all, [da, b, c]), &d).map(|s| s * steps[0] * along),
+            last(&self.rows(all, [a, db, c]), &d).map(|s| s * steps[1] * across),
+            last(&self.rows(all, [a, b, dc]), &d).map(|s| s * steps[2] * across),
+            last(&row, &dd).map(|s| s * (steps[3] / (2.0 * RIM))),
         ];
-        (place.turned(f), core::array::from_fn(|k| core::array::from_fn(|m| turned[k] * change[m][k])))
+        (place.turned(last(&row, &d)), core::array::from_fn(|k| core::array::from_fn(|m| turned[k] * change[m][k])))
     }
 
     /// Three neighbours along the slenderness, each the sum over 27 nodes of the ball.
-    #[inline(always)]
-    fn rows(&self, [a, b, c, d]: [&Stencil; 4], [u, v, w]: [&[f64; 3]; 3]) -> [f64; ROW] {
-        let [_, l2, l3, lq] = Self::lengths(self.intervals);
-        let step3 = lq * WIDTH;
-        let step2 = l3 * step3;
-        let step1 = l2 * step2;
-        let first = a.first * step1 + b.first * step2 + c.first * step3 + d.first * WIDTH;
-        // A sum for each node of u3: one alone would be a chain of 27 additions, each waiting for the one before.
-        let mut sums = [[0.0; ROW]; 3];
-        for (i, u) in u.iter().enumerate() {
-            for (j, v) in v.iter().enumerate() {
-                let (plane, start) = (u * v, first + i * step1 + j * step2);
-                for (k, (sum, w)) in sums.iter_mut().zip(w).enumerate() {
-                    let weight = plane * w;
-                    let row = &self.nodes[start + k * step3..][..ROW];
-                    for (sum, &node) in sum.iter_mut().zip(row) {
-                        *sum += weight * f64::from(node);
-                    }
+    #[inline]
+    fn rows(&self, [a, b, c, d]: [Stencil; 4], weights: [[f64; 3]; 3]) -> [f64; ROW] {
+        let [l1, l2, l3, _] = Self::lengths(self.intervals);
+        let (step1, step2) = (l2 * l3 * ROW, l3 * ROW);
+        let first = d.first * l1 * step1 + a.first * step1 + b.first * step2 + c.first * ROW;
+        let nodes = &self.nodes[first..first + 2 * (step1 + step2) + 3 * ROW];
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+            // SAFETY: the features were just found.
+            return unsafe { rows_avx2(nodes, [step1, step2], weights) };
+        }
+        rows_any(nodes, [step1, step2], weights)
+    }
+}
+
+/// Sums of rows that begin at multiples of the steps. There is a sum for each node of u3: one alone would be a chain of 27
+/// additions, each waiting for the one before.
+#[inline]
+fn rows_any(nodes: &[f32], [step1, step2]: [usize; 2], [u, v, w]: [[f64; 3]; 3]) -> [f64; ROW] {
+    let mut sums = [[0.0; ROW]; 3];
+    for (i, u) in u.iter().enumerate() {
+        for (j, v) in v.iter().enumerate() {
+            for (k, (sum, w)) in sums.iter_mut().zip(w).enumerate() {
+                let row = &nodes[i * step1 + j * step2 + k * ROW..][..ROW];
+                let weight = u * v * w;
+                for (sum, &node) in sum.iter_mut().zip(row) {
+                    *sum = weight.mul_add(f64::from(node), *sum);
                 }
             }
         }
-        let [mut sum, second, third] = sums;
-        for n in 0..ROW {
-            sum[n] = (sum[n] + second[n]) + third[n];
-        }
-        sum
     }
+    let [first, second, third] = sums;
+    core::array::from_fn(|n| (first[n] + second[n]) + third[n])
+}
+
+/// The same operations four at a time. A fused one rounds once wherever it is computed, so the result is the same bitwise.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn rows_avx2(nodes: &[f32], [step1, step2]: [usize; 2], [u, v, w]: [[f64; 3]; 3]) -> [f64; ROW] {
+    use core::arch::x86_64::{
+        _mm_loadu_ps, _mm256_add_pd, _mm256_cvtps_pd, _mm256_fmadd_pd, _mm256_set1_pd, _mm256_setzero_pd,
+        _mm256_storeu_pd,
+    };
+    assert!(nodes.len() >= 2 * (step1 + step2) + 3 * ROW);
+    let mut sums = [[_mm256_setzero_pd(); ROW / 4]; 3];
+    for (i, u) in u.iter().enumerate() {
+        for (j, v) in v.iter().enumerate() {
+            for (k, (sum, w)) in sums.iter_mut().zip(w).enumerate() {
+                let (start, weight) = (i * step1 + j * step2 + k * ROW, _mm256_set1_pd(u * v * w));
+                for (four, sum) in sum.iter_mut().enumerate() {
+                    // SAFETY: the last row ends within the nodes, as was just seen.
+                    let node = unsafe { _mm_loadu_ps(nodes.as_ptr().add(start + 4 * four)) };
+                    *sum = _mm256_fmadd_pd(weight, _mm256_cvtps_pd(node), *sum);
+                }
+            }
+        }
+    }
+    let mut row = [0.0; ROW];
+    for four in 0..ROW / 4 {
+        let sum = _mm256_add_pd(_mm256_add_pd(sums[0][four], sums[1][four]), sums[2][four]);
+        // SAFETY: four numbers of the row.
+        unsafe { _mm256_storeu_pd(row.as_mut_ptr().add(4 * four), sum) };
+    }
+    row
 }
 
 /// The sum along the slenderness.

@@ -5,6 +5,7 @@ use super::CreepError;
 use super::coordinates::{self, RIM, creepage, ratio, unlimited};
 use super::file::{self, Quarter, hex};
 use super::fit::{Ball, along};
+use super::lookup::bounded;
 use crate::contact::creep::{Exact, Kalker};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
@@ -170,7 +171,8 @@ impl Maker {
             .collect::<Result<_, _>>()?;
         let nodes =
             (0..quarters[0].len()).flat_map(|node| along(&quarters.iter().map(|f| f[node]).collect::<Vec<_>>()));
-        let scale = along(&(0..count).map(|q| self.scale(q)).collect::<Vec<_>>());
+        let factors = |q| bounded(self.scale(q), ratio(self.slenderness(q)));
+        let scale = along(&(0..count).map(factors).collect::<Vec<_>>());
         let quarter = Quarter { intervals: self.intervals, scale, nodes: nodes.collect() };
         Ok(file::write(&quarter, self.poisson, self.elements, &Self::solver()))
     }

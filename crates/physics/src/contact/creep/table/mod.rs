@@ -16,7 +16,7 @@ use super::{CreepError, RollingContact};
 use crate::{Mask, Scalar};
 use coordinates::{RIM, contraction, inside, limited, scales, slenderness};
 pub use file::Provenance;
-use lookup::Spline;
+use lookup::{Spline, bounded};
 pub use maker::Maker;
 use std::sync::OnceLock;
 
@@ -100,19 +100,20 @@ impl CreepTable {
 
     /// [Fx, Fy, Mz] on the wheel, N and N m.
     pub(super) fn force<S: Scalar>(&self, kalker: &Kalker, shear_modulus: f64, c: &RollingContact<S>) -> [S; 3] {
-        let (limit, [root_a, root_b]) = (limit(c), [c.a.sqrt(), c.b.sqrt()]);
-        let (mean, q) = (root_a * root_b, slenderness(root_a, root_b));
-        let within = inside(q);
-        let mut scale = self.spline.scales(q.clamp(-RIM, RIM));
+        let (limit, sum, q) = (limit(c), c.a + c.b, slenderness(c.a, c.b));
+        let (within, q) = (inside(q), q.clamp(-RIM, RIM));
+        let mut scale = self.spline.scales(q);
         if !within.all() {
-            let beyond = scales(kalker, c.a / c.b);
+            let ratio = c.a / c.b;
+            let beyond = bounded(scales(kalker, ratio), ratio);
             scale = core::array::from_fn(|i| S::select(within, scale[i], beyond[i]));
         }
-        let w = [scale[0] * c.xi, scale[1] * c.eta, scale[2] * c.phi * mean];
+        // v = w G a (a + b)/(mu N), as the factors are bounded ones.
+        let w = [scale[0] * c.xi, scale[1] * c.eta, scale[2] * c.phi * sum];
         let size = (w[0].square() + w[1].square() + w[2].square() + LEAST_CREEPAGE * LEAST_CREEPAGE).sqrt();
-        let inward = contraction(size, mean * mean * shear_modulus, limit);
-        let [fx, fy, mz] = self.spline.at([w[0] * inward, w[1] * inward, w[2] * inward, q.clamp(-RIM, RIM)]);
+        let inward = contraction(size, c.a * sum * shear_modulus, limit);
+        let [fx, fy, mz] = self.spline.at([w[0] * inward, w[1] * inward, w[2] * inward, q]);
         let [fx, fy] = limited([fx, fy]);
-        [fx * limit, fy * limit, mz * limit * (c.a + c.b) * 0.5]
+        [fx * limit, fy * limit, mz * limit * sum * 0.5]
     }
 }
