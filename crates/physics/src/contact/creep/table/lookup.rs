@@ -221,10 +221,11 @@ fn rows_avx2(nodes: &[f32], [step1, step2]: [usize; 2], [u, v, w]: [[f64; 3]; 3]
         }
     }
     let mut row = [0.0; ROW];
-    for four in 0..ROW / 4 {
-        let sum = _mm256_add_pd(_mm256_add_pd(sums[0][four], sums[1][four]), sums[2][four]);
+    let [first, second, third] = sums;
+    for (n, four) in row.chunks_exact_mut(4).enumerate() {
+        let sum = _mm256_add_pd(_mm256_add_pd(first[n], second[n]), third[n]);
         // SAFETY: four numbers of the row.
-        unsafe { _mm256_storeu_pd(row.as_mut_ptr().add(4 * four), sum) };
+        unsafe { _mm256_storeu_pd(four.as_mut_ptr(), sum) };
     }
     row
 }
