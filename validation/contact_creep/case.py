@@ -24,10 +24,10 @@ Apache-2.0), full theory, for a/b 0.5 and 1; for the others our own solver of th
 (root mean square) of CONTACT on all rows of the first two; every fifth of them, all kinds, is solved here. Figures are
 root mean squares of |dF| over mu Fn. Plain FASTSIM has its largest errors where creepage and spin act together: there
 three flexibilities give the traction the wrong direction, the more so the more they differ (a/b 0.2). A coarse grid
-hides part of the error of the method, so 40 x 40 stands beside. The table has its largest errors at a/b 10 and 20, where
-the force of pure spin has a sharp peak; the limits are for a/b 0.2 to 5 as asked of the solver. The traction curves are CONTACT's example of a
-locomotive's wheel: its own FASTSIM counts the first half element of a strip as a whole one, which makes it 3 % stiffer
-at rest.
+hides part of the error of the method, so 40 x 40 stands beside. The table has its largest errors at a/b 10 and 20,
+where the force of pure spin has a sharp peak; the limits of the largest error are for a/b 0.2 to 5. The traction curves
+are CONTACT's example of a locomotive's wheel: its own FASTSIM counts the first half element of a strip as a whole one,
+which makes it 3 % stiffer at rest.
 """
 
 ASKED, BEYOND = (0.2, 0.5, 1.0, 2.0, 5.0), (0.1, 10.0, 20.0)
