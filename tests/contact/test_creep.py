@@ -16,7 +16,7 @@ from klingel.errors import InputError
 
 STEEL: dict[str, Any] = {"shear_modulus": 8.2e10, "poisson": 0.28}
 PATCH: dict[str, Any] = {"a": 6e-3, "b": 4e-3, "normal_force": 5e4, "friction": 0.3, **STEEL}
-LAWS = ("linear", "shen_hedrick_elkins", "polach", "fastsim")
+LAWS = ("linear", "shen_hedrick_elkins", "polach", "fastsim", "table")
 LIMIT = 1.5e4
 
 

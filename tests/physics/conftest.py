@@ -24,7 +24,9 @@ SPEEDS = {300.0: 30.0, 800.0: 49.0}
 Simulate = Callable[..., xr.Dataset]
 
 
-def scenario(vehicle: str, radius: float = 300.0, hand: str = "right", step: float = 1e-3) -> kl.Scenario:
+def scenario(
+    vehicle: str, radius: float = 300.0, hand: str = "right", step: float = 1e-3, creep_law: Any = "table"
+) -> kl.Scenario:
     name, strategy = STRATEGIES[vehicle]
     speed = SPEEDS[radius]
     track = kl.Track.curve(
@@ -36,15 +38,17 @@ def scenario(vehicle: str, radius: float = 300.0, hand: str = "right", step: flo
         straight_after=30.0,
         hand=hand,  # type: ignore[arg-type]
     )
-    return kl.Scenario(library.vehicle(name), track, speed=speed, control=strategy(), step=step)
+    return kl.Scenario(library.vehicle(name), track, speed=speed, control=strategy(), step=step, creep_law=creep_law)
 
 
 @pytest.fixture(scope="session")
 def simulate() -> Simulate:
-    """`simulate(vehicle, radius, hand, step)`: the run of that short curve."""
+    """`simulate(vehicle, radius, hand, step, creep_law)`: the run of that short curve."""
 
     @cache
-    def run(vehicle: str, radius: float = 300.0, hand: str = "right", step: float = 1e-3) -> xr.Dataset:
-        return kl.simulate(scenario(vehicle, radius, hand, step), strict=True)
+    def run(
+        vehicle: str, radius: float = 300.0, hand: str = "right", step: float = 1e-3, creep_law: str = "table"
+    ) -> xr.Dataset:
+        return kl.simulate(scenario(vehicle, radius, hand, step, creep_law), strict=True)
 
     return run

@@ -26,7 +26,7 @@ def test_columns_are_the_asked_ones_in_the_asked_order(synthetic):
         "vehicle radius_m speed_kmh y_max_mm y_curve_mm attack_angle_max_mrad lateral_force_max_kN "
         "lateral_force_floor_kN wear_index_N actuator_force_max_kN steering_voltage_max_V armature_current_max_A "
         "contact_angle_max_deg yq_max q_min_kN body_lateral_acc_mps2 spin_work_N flange_contact outcome "
-        "realtime_factor"
+        "notes realtime_factor"
     )
     assert " ".join(COLUMNS) == asked
     assert tuple(curving(synthetic.run()).row()) == COLUMNS

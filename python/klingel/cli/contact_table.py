@@ -85,7 +85,7 @@ def make(out: Path, work: Path | None, shape: Shape, say: Say) -> Path:
         remedy = f"make room or choose others with --work and --out; finished parts are kept, {REMEDY}"
         raise InputError.single("", None, str(error), remedy=remedy) from None
     made, seconds = header(content), time.monotonic() - began
-    say(f"{out}: {len(content) / 1e6:.2f} MB, SHA-256 of its numbers {made['checksum']}, {seconds:.0f} s")
+    say(f"{out}: {len(content) / 1e6:.2f} MB, check sum (SHA-256) {made['checksum']}, {seconds:.0f} s")
     return out
 
 

@@ -23,7 +23,7 @@ def check_built_in(say: Callable[[str], object], points: int = POINTS) -> None:
     """
     table = creep_table()
     say(f"table of creep forces: {table}; intervals {' x '.join(map(str, table.intervals))}")
-    say(f"SHA-256 of its numbers: {table.check_sum}, right")
+    say(f"check sum (SHA-256): {table.check_sum}, right")
     sources = "those of this build" if table.by_this_solver else "older than those of this build"
     say(f"SHA-256 of its solver's sources: {table.solver}, {sources}")
     rows = compare_with_exact(points)

@@ -113,8 +113,8 @@ def creep_force(
     >>> for law in ("exact", "table"):
     ...     fx, _, _ = creep_force(law, xi=1e-3, eta=0.0, phi=0.0, **patch)
     ...     print(round(fx / 1e3, 1))
-    -7.8
-    -7.8
+    -7.7
+    -7.7
     """
     options = {"slope": (slope, 3), "reduction": (reduction, 2), "falling": (falling, 2)}
     problems = [

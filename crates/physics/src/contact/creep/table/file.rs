@@ -16,7 +16,7 @@ pub struct Provenance {
     /// Elements along and across at every node, and those of the correction.
     pub coarse: [usize; 2],
     pub fine: [usize; 2],
-    /// SHA-256 over the sources of the solver (`Maker::solver`), and over the numbers of the file.
+    /// SHA-256 over the sources of the solver (`Maker::solver`), and over the rest of the file.
     pub solver: String,
     pub checksum: String,
     /// Intervals from the middle to the surface of the ball of creepages along each axis, and over the slenderness.
@@ -45,17 +45,17 @@ pub(super) fn write(quarter: &Quarter, poisson: f64, [coarse, fine]: [[usize; 2]
         [0, 1, 2].map(|k| (c[k] / unit[k]).round() as i16).into_iter().flat_map(i16::to_le_bytes).collect::<Vec<_>>()
     }));
     let join = |numbers: &[usize]| numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-    let header = format!(
-        "{TITLE}\npoisson: {poisson}\ncoarse: {}\nfine: {}\nintervals: {}\nunits: {} {} {}\nsolver: {solver}\nchecksum: {}\n\n",
+    let head = format!(
+        "{TITLE}\npoisson: {poisson}\ncoarse: {}\nfine: {}\nintervals: {}\nunits: {} {} {}\nsolver: {solver}\n",
         join(&coarse),
         join(&fine),
         join(&quarter.intervals),
         unit[0],
         unit[1],
         unit[2],
-        checksum(&numbers),
     );
-    [header.into_bytes(), numbers].concat()
+    let sum = checksum(head.as_bytes(), &numbers);
+    [head.into_bytes(), format!("checksum: {sum}\n\n").into_bytes(), numbers].concat()
 }
 
 /// Provenance and spline of a file.
@@ -80,8 +80,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Provenance, Spline), CreepError> {
         checksum: entry("checksum")?.into(),
         intervals: parse(entry("intervals")?)?,
     };
-    if checksum(numbers) != provenance.checksum {
-        return Err(damaged("its numbers do not fit their check sum"));
+    let head = header.find("checksum: ").map_or(header, |end| &header[..end]);
+    if checksum(head.as_bytes(), numbers) != provenance.checksum {
+        return Err(damaged("header and numbers do not fit their check sum"));
     }
     let spline = spline(provenance.intervals, parse(entry("units")?)?, numbers)?;
     Ok((provenance, spline))
@@ -132,8 +133,9 @@ fn parse<T: core::str::FromStr + Copy + Default, const N: usize>(text: &str) -> 
     numbers.try_into().map_err(|_| damaged(&format!("\"{text}\" in its header is not {N} numbers")))
 }
 
-fn checksum(numbers: &[u8]) -> String {
-    hex(&Sha256::digest(numbers))
+/// SHA-256 over all that comes before and behind its own line.
+fn checksum(head: &[u8], numbers: &[u8]) -> String {
+    hex(&Sha256::new().chain_update(head).chain_update(numbers).finalize())
 }
 
 pub(super) fn hex(bytes: &[u8]) -> String {

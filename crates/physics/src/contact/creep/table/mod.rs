@@ -21,7 +21,7 @@ pub use maker::Maker;
 use std::sync::OnceLock;
 
 /// The file of the table in the package, made by `klingel contact-table`.
-pub const CREEP_TABLE: &[u8] = include_bytes!("../../../../data/creep_table.bin");
+pub static CREEP_TABLE: &[u8] = include_bytes!("../../../../data/creep_table.bin");
 
 /// Creepages below this count as none, so that the size of the slip has a slope.
 const LEAST_CREEPAGE: f64 = 1e-14;

@@ -75,6 +75,8 @@ fn the_table_is_whole_and_says_what_it_was_made_of() {
     *damaged.last_mut().unwrap() ^= 1;
     let message = CreepTable::from_bytes(&damaged).unwrap_err().to_string();
     assert!(message.contains("check sum"), "{message}");
+    let text = String::from_utf8_lossy(&CREEP_TABLE[..100]).replace("0.28", "0.38");
+    assert!(CreepTable::from_bytes(&[text.as_bytes(), &CREEP_TABLE[100..]].concat()).is_err());
     for bytes in [&b""[..], b"klingel creep table 0\n\n", &CREEP_TABLE[..200]] {
         assert!(CreepTable::from_bytes(bytes).is_err());
     }
