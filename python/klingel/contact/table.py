@@ -24,8 +24,8 @@ class CreepTable:
     """What a table was made of.
 
     ratios: least and largest a/b; poisson: of both bodies; elements: of a patch, along and across rolling; intervals:
-    of the three creepages, from none to full sliding, and of a/b; check_sum: SHA-256 of the rest of its file; solver: SHA-256 of
-    the solver's sources that made it; by_this_solver: whether they are those of this build.
+    of the three creepages, from none to full sliding, and of a/b; check_sum: SHA-256 of the rest of its file; solver:
+    SHA-256 of the solver's sources that made it; by_this_solver: whether they are those of this build.
 
     >>> table = creep_table()
     >>> table.poisson, len(table.check_sum)
