@@ -131,7 +131,7 @@ def _dataset(raw: Mapping[str, Any], spec: str) -> xr.Dataset:
 def _notes(result: xr.Dataset, spec: Spec) -> Iterator[str]:
     """What a reader of the numbers should know."""
     wheels = [str(name) for name in result.data_vars if str(name).endswith(".slender_force")]
-    if spec["creep"]["law"] == "table" and wheels:
+    if spec["creep"]["law"] == "table" and wheels and result.sizes["time"]:
         forces = np.array([result[wheel].to_numpy() for wheel in wheels])
         place, when = np.unravel_index(np.argmax(forces), forces.shape)
         if (most := forces[place, when]) > 0.0:
