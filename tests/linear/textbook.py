@@ -1,0 +1,301 @@
+"""Textbook matrices of the lateral motion of railway vehicles, for tests and validation only (Wickens; Garg, Dukkipati).
+Derived in docs/theory/linear_vehicle.md; nothing here uses the package: M q'' + D q' + K q + series dampers = 0."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Matrix = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Triple = tuple[float, float, float]
+
+GRAVITY = 9.81
+DOFS = 3
+"""Of a body: y to the right [m], roll (right side down) and yaw (to the right) [rad]."""
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Right-hand contact of a centred wheelset, and how it moves with the wheelset's shift y to the right.
+
+    load: vertical force of the wheel [N]; half_distance: of the contacts [m]; radius: rolling radius [m]; angle: of the
+    contact plane, positive rising to the field side [rad]; conicity: growth of the rolling radius per shift; roll: of the
+    wheelset per shift, its right side rising [rad/m]; tilt: growth of the angle per shift, in the track [rad/m];
+    f11, f22 [N], f23 [N m], f33 [N m2]: Kalker's coefficients of one wheel, G a b C11 and so on.
+    """
+
+    load: float
+    half_distance: float
+    radius: float
+    angle: float
+    conicity: float
+    roll: float
+    tilt: float
+    f11: float
+    f22: float
+    f23: float = 0.0
+    f33: float = 0.0
+
+    @property
+    def slip(self) -> float:
+        """Lateral slip of the contact per lateral velocity: the wheelset rolls as it shifts."""
+        c, s = math.cos(self.angle), math.sin(self.angle)
+        return c + self.roll * (self.radius * c + self.half_distance * s)
+
+    @property
+    def transfer(self) -> float:
+        """Relative growth of the right wheel's normal force per shift [1/m]."""
+        c, s, b, r = math.cos(self.angle), math.sin(self.angle), self.half_distance, self.radius
+        sharpness = self.conicity / s if s else 1.0
+        return (sharpness + (self.tilt - self.roll) * (r * c + b * s)) / (b * c - r * s)
+
+
+def plain(load: float, half_distance: float, radius: float, conicity: float, f11: float, f22: float) -> Contact:
+    """The simplest contact: a conicity, no contact angle, so no gravity, roll or spin."""
+    return Contact(load, half_distance, radius, 0.0, conicity, 0.0, 0.0, f11, f22)
+
+
+def arcs(
+    load: float, half_distance: float, radius: float, angle: float, wheel: float, rail: float, f: Sequence[float]
+) -> Contact:
+    """A wheel arc (hollow, radius `wheel` [m], infinite for a cone) on a rail arc of radius `rail` [m]; f: f11 to f33."""
+    c, s = math.cos(angle), math.sin(angle)
+    roll = s / (half_distance * c - radius * s)
+    rest = c + roll * (rail + radius * c + half_distance * s)
+    share = 1.0 / (1.0 - rail / wheel)
+    tilt = roll + rest * share / wheel
+    return Contact(load, half_distance, radius, angle, rest * share * s, roll, tilt, *f)
+
+
+@dataclass(frozen=True)
+class Drop:
+    """Terms that textbooks leave out, each of which may be left out here: true leaves it in."""
+
+    gravity: bool = True
+    spin: bool = True
+    gyroscope: bool = True
+
+
+ALL = Drop()
+
+
+def wheelset_contact(contact: Contact, speed: float, axle: float, terms: Drop = ALL) -> tuple[Matrix, Matrix]:
+    """D and K that both contacts and the spinning axle add in (y, yaw); axle: moment of inertia of the spin [kg m2]."""
+    c, s, b, r, V = math.cos(contact.angle), math.sin(contact.angle), contact.half_distance, contact.radius, speed
+    f11, f22 = contact.f11, contact.f22
+    f23, f33 = (contact.f23, contact.f33) if terms.spin else (0.0, 0.0)
+    kappa, load = contact.slip, 2.0 * contact.load if terms.gravity else 0.0
+    turn = contact.tilt - contact.roll  # of the contact plane against the axle
+    h = axle * V / r * contact.roll if terms.gyroscope else 0.0
+    side = f23 * s / r  # lateral spin force of each wheel at rest, outwards
+    D = np.array(
+        [
+            [2.0 * f22 * kappa**2 / V, 2.0 * f23 * kappa * c / V - h],
+            [-2.0 * f23 * kappa * c / V + h, 2.0 * (f11 * b**2 + f33 * c**2) / V],
+        ]
+    )
+    arm = b - r * s / c
+    lateral = load * (contact.tilt + s / c * contact.transfer) - 2.0 * kappa * (
+        f23 * turn * c / r + side * contact.transfer
+    )
+    yaw = 2.0 * f23 + (2.0 * side * c - load * s / c) * arm
+    K = np.array(
+        [
+            [lateral, -2.0 * f22 * kappa / c],
+            [2.0 * f11 * b * contact.conicity / r - 2.0 * f33 * turn * c**2 / r, yaw],
+        ]
+    )
+    return D, K
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid body: mass [kg], moments of inertia of roll and yaw [kg m2], place ahead [m] and height over rail [m]."""
+
+    mass: float
+    roll: float
+    yaw: float
+    x: float
+    height: float
+
+
+@dataclass(frozen=True)
+class Wheelset(Body):
+    """A body on two rails: `axle` is the moment of inertia of the spin [kg m2]. Its roll follows its shift."""
+
+    axle: float
+    contact: Contact
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Point (ahead, right, height) [m] of two bodies, b against a; a is None for the ground."""
+
+    a: str | None
+    b: str
+    point: Triple
+
+
+@dataclass(frozen=True)
+class Spring:
+    """Stiffness along x, y, z [N/m], about x and z [N m/rad]; `load` is the vertical force that a bears on b, down [N]."""
+
+    joint: Joint
+    stiffness: Triple = (0.0, 0.0, 0.0)
+    turning: tuple[float, float] = (0.0, 0.0)
+    load: float = 0.0
+
+
+@dataclass(frozen=True)
+class Damper:
+    """Damper [N s/m] along an axis (0 x, 1 y, 2 z) with a spring in series [N/m]: F' = k (u' - F/c)."""
+
+    joint: Joint
+    axis: int
+    damping: float
+    series: float
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """Bodies by name, springs and dampers between them."""
+
+    bodies: Mapping[str, Body]
+    springs: Sequence[Spring]
+    dampers: Sequence[Damper] = field(default=())
+
+    def names(self) -> list[str]:
+        return list(self.bodies)
+
+    def place(self, name: str) -> int:
+        return DOFS * self.names().index(name)
+
+
+def displacement(vehicle: Vehicle, name: str | None, point: Triple) -> Matrix:
+    """Rows of the small displacement (x, y, z) of a point that is fixed in a body."""
+    rows = np.zeros((3, DOFS * len(vehicle.bodies)))
+    if name is not None:
+        body, at = vehicle.bodies[name], vehicle.place(name)
+        px, py, pz = point[0] - body.x, point[1], body.height - point[2]
+        rows[:, at : at + DOFS] = [[0.0, 0.0, -py], [1.0, -pz, px], [0.0, py, 0.0]]
+    return rows
+
+
+def deflection(vehicle: Vehicle, joint: Joint) -> Matrix:
+    """Rows of the joint's deflection: b's point less a's, seen from a."""
+    return displacement(vehicle, joint.b, joint.point) - displacement(vehicle, joint.a, joint.point)
+
+
+def rotation(vehicle: Vehicle, name: str | None, axis: int) -> Matrix:
+    """Row of a body's roll (1) or yaw (2)."""
+    row = np.zeros(DOFS * len(vehicle.bodies))
+    if name is not None:
+        row[vehicle.place(name) + axis] = 1.0
+    return row
+
+
+def elastic(vehicle: Vehicle) -> Matrix:
+    """Stiffness of the springs: the sum of k row' row."""
+    K = np.zeros((DOFS * len(vehicle.bodies),) * 2)
+    for spring in vehicle.springs:
+        rows = deflection(vehicle, spring.joint)
+        K += rows.T @ np.diag(spring.stiffness) @ rows
+        for axis, k in zip((1, 2), spring.turning, strict=True):
+            row = rotation(vehicle, spring.joint.b, axis) - rotation(vehicle, spring.joint.a, axis)
+            K += k * np.outer(row, row)
+    return K
+
+
+def pendulum(vehicle: Vehicle) -> Matrix:
+    """Stiffness of the loads that the springs carry: they turn with a, and bodies roll about their centres."""
+    K = np.zeros((DOFS * len(vehicle.bodies),) * 2)
+    for spring in vehicle.springs:
+        a, b, point = spring.joint.a, spring.joint.b, spring.joint.point
+        roll_a, roll_b = rotation(vehicle, a, 1), rotation(vehicle, b, 1)
+        across = deflection(vehicle, spring.joint)[1]
+        second = -np.outer(roll_a, across) - np.outer(across, roll_a)
+        second -= (vehicle.bodies[b].height - point[2]) * np.outer(roll_b, roll_b)
+        if a is not None:
+            second += (vehicle.bodies[a].height - point[2]) * np.outer(roll_a, roll_a)
+        K -= spring.load * second
+    return K
+
+
+def slaved(vehicle: Vehicle) -> Matrix:
+    """From the free coordinates to (y, roll, yaw) of every body: a wheelset rolls by -Gamma y."""
+    columns = []
+    for name, body in vehicle.bodies.items():
+        at = vehicle.place(name)
+        block = np.zeros((DOFS * len(vehicle.bodies), DOFS))
+        block[at : at + DOFS] = np.eye(DOFS)
+        if isinstance(body, Wheelset):
+            block[at + 1, 0] = -body.contact.roll
+            block = block[:, [0, 2]]
+        columns.append(block)
+    return np.hstack(columns)
+
+
+def matrices(vehicle: Vehicle, speed: float, terms: Drop = ALL) -> tuple[Matrix, Matrix, Matrix]:
+    """M, D and K in the free coordinates, without the series dampers."""
+    T = slaved(vehicle)
+    inertia = [v for body in vehicle.bodies.values() for v in (body.mass, body.roll, body.yaw)]
+    K = elastic(vehicle) + (pendulum(vehicle) if terms.gravity else 0.0)
+    M, K = T.T @ np.diag(inertia) @ T, T.T @ K @ T
+    D = np.zeros_like(M)
+    at = 0
+    for body in vehicle.bodies.values():
+        if isinstance(body, Wheelset):
+            both = slice(at, at + 2)
+            damping, stiffness = wheelset_contact(body.contact, speed, body.axle, terms)
+            D[both, both] += damping
+            K[both, both] += stiffness
+        at += 2 if isinstance(body, Wheelset) else DOFS
+    return M, D, K
+
+
+def state_matrix(vehicle: Vehicle, speed: float, terms: Drop = ALL) -> Matrix:
+    """A of x' = A x with x = (q, q', damper forces)."""
+    M, D, K = matrices(vehicle, speed, terms)
+    T = slaved(vehicle)
+    rows = [deflection(vehicle, d.joint)[d.axis] @ T for d in vehicle.dampers]
+    R = np.array(rows).reshape(len(rows), len(M))
+    k = np.array([d.series for d in vehicle.dampers])
+    c = np.array([d.damping for d in vehicle.dampers])
+    n, m = len(M), len(rows)
+    inverse = np.linalg.inv(M)
+    A = np.zeros((2 * n + m, 2 * n + m))
+    A[:n, n : 2 * n] = np.eye(n)
+    A[n : 2 * n] = np.hstack([-inverse @ K, -inverse @ D, -inverse @ R.T])
+    A[2 * n :, n : 2 * n] = k[:, None] * R
+    A[2 * n :, 2 * n :] = -np.diag(k / c) if m else 0.0
+    return A
+
+
+def oscillations(A: Matrix, slowest: float = 1.0) -> Complex:
+    """Eigenvalues above the real axis that are faster than `slowest` [rad/s], from the slowest."""
+    values = np.linalg.eigvals(A)
+    kept = values[values.imag > slowest]
+    return kept[np.argsort(kept.imag)]
+
+
+def critical_speed(A: Callable[[float], Matrix], low: float, high: float, *, step: float = 1.0) -> float:
+    """The lowest speed [m/s] from which an oscillation grows, by steps and bisection; infinite if none does."""
+
+    def grows(speed: float) -> bool:
+        return bool(oscillations(A(speed)).real.max() > 0.0)
+
+    speed = low
+    while not grows(speed):
+        speed += step
+        if speed > high:
+            return math.inf
+    below, above = speed - step, speed
+    while above - below > 1e-4:
+        middle = 0.5 * (below + above)
+        below, above = (below, middle) if grows(middle) else (middle, above)
+    return above
