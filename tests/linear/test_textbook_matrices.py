@@ -6,14 +6,14 @@ import math
 import numpy as np
 import pytest
 from tests.linear import textbook
-from tests.linear.textbook import Body, Contact, Drop, Joint, Matrix, Spring, Vehicle, Wheelset
+from tests.linear.textbook import Body, Contact, Joint, Matrix, Spring, Terms, Vehicle, Wheelset
 from tests.linear.textbook_vehicles import coach
 
 from klingel import library
 
 LOAD, B, R0, RAIL = 56e3, 0.74, 0.46, 0.3
 F = (10e6, 9e6, 20e3, 30.0)
-BARE = Drop(gravity=False, spin=False, gyroscope=False)
+BARE = Terms(gravity=False, spin=False, gyroscope=False)
 
 
 def guided(contact: Contact, lateral: float, yaw: float) -> Vehicle:
@@ -52,7 +52,7 @@ def test_weight_and_roll_follow_from_two_pairs_of_arcs(wheel: float) -> None:
     roll, height = zip(*(standing(angle, wheel, y) for y in (-2e-5, 0.0, 2e-5)), strict=True)
     assert (roll[2] - roll[0]) / 4e-5 == pytest.approx(-contact.roll, rel=1e-4)
     lift = -(height[2] - 2.0 * height[1] + height[0]) / 4e-10
-    D, K = textbook.wheelset_contact(contact, 10.0, 0.0, Drop(spin=False))
+    D, K = textbook.wheelset_contact(contact, 10.0, 0.0, Terms(spin=False))
     assert K[0, 0] == pytest.approx(2.0 * LOAD * lift, rel=1e-4)
 
 

@@ -26,7 +26,8 @@ class Contact:
     load: vertical force of the wheel [N]; half_distance: of the contacts [m]; radius: rolling radius [m]; angle: of the
     contact plane, positive rising to the field side [rad]; conicity: growth of the rolling radius per shift; roll: of the
     wheelset per shift, its right side rising [rad/m]; tilt: growth of the angle per shift, in the track [rad/m];
-    f11, f22 [N], f23 [N m], f33 [N m2]: Kalker's coefficients of one wheel, G a b C11 and so on.
+    f11, f22 [N], f23 [N m], f33 [N m2]: Kalker's coefficients of one wheel, G a b C11 and so on; f23_growth: of f23 per
+    shift at a constant load [N], which arcs do not have.
     """
 
     load: float
@@ -40,6 +41,7 @@ class Contact:
     f22: float
     f23: float = 0.0
     f33: float = 0.0
+    f23_growth: float = 0.0
 
     @property
     def slip(self) -> float:
@@ -73,43 +75,52 @@ def arcs(
 
 
 @dataclass(frozen=True)
-class Drop:
-    """Terms that textbooks leave out, each of which may be left out here: true leaves it in."""
+class Terms:
+    """What is counted: stiffness of the weights, forces and moments of spin, momentum of the spinning axles, and (no
+    textbook does) the change of the lateral spin force as lateral creep, springs and inertia shift load across."""
 
     gravity: bool = True
     spin: bool = True
     gyroscope: bool = True
+    load_shift: bool = False
 
 
-ALL = Drop()
+TEXTBOOK = Terms()
 
 
-def wheelset_contact(contact: Contact, speed: float, axle: float, terms: Drop = ALL) -> tuple[Matrix, Matrix]:
+def shift_of_load(contact: Contact, terms: Terms) -> tuple[float, float]:
+    """Share of the lateral creep force that is left by the load that it shifts across itself, and the part of a roll
+    moment on the wheelset that becomes lateral force [1/m]: the spin force at rest grows with the load."""
+    if not (terms.load_shift and terms.spin):
+        return 1.0, 0.0
+    c, s, b, r = math.cos(contact.angle), math.sin(contact.angle), contact.half_distance, contact.radius
+    gain = contact.f23 * s / r / (contact.load / c) / (b * c - r * s)
+    share = 1.0 / (1.0 + gain * (r * c + b * s))
+    return share, contact.slip * share * gain
+
+
+def wheelset_contact(contact: Contact, speed: float, axle: float, terms: Terms = TEXTBOOK) -> tuple[Matrix, Matrix]:
     """D and K that both contacts and the spinning axle add in (y, yaw); axle: moment of inertia of the spin [kg m2]."""
     c, s, b, r, V = math.cos(contact.angle), math.sin(contact.angle), contact.half_distance, contact.radius, speed
     f11, f22 = contact.f11, contact.f22
     f23, f33 = (contact.f23, contact.f33) if terms.spin else (0.0, 0.0)
-    kappa, load = contact.slip, 2.0 * contact.load if terms.gravity else 0.0
-    turn = contact.tilt - contact.roll  # of the contact plane against the axle
-    h = axle * V / r * contact.roll if terms.gyroscope else 0.0
-    side = f23 * s / r  # lateral spin force of each wheel at rest, outwards
+    weight = 2.0 * contact.load if terms.gravity else 0.0
+    h = axle * V / r if terms.gyroscope else 0.0
+    share, turned = shift_of_load(contact, terms)
+    kappa, turn = contact.slip, contact.tilt - contact.roll
+    T, arm = f23 * s / r, b - r * s / c
+    creep = kappa * share  # of a lateral force along both contact planes
     D = np.array(
         [
-            [2.0 * f22 * kappa**2 / V, 2.0 * f23 * kappa * c / V - h],
-            [-2.0 * f23 * kappa * c / V + h, 2.0 * (f11 * b**2 + f33 * c**2) / V],
+            [2.0 * creep * f22 * kappa / V, 2.0 * creep * f23 * c / V - h * (contact.roll - turned)],
+            [-2.0 * f23 * kappa * c / V + h * contact.roll, 2.0 * (f11 * b**2 + f33 * c**2) / V],
         ]
     )
-    arm = b - r * s / c
-    lateral = load * (contact.tilt + s / c * contact.transfer) - 2.0 * kappa * (
-        f23 * turn * c / r + side * contact.transfer
+    lateral = weight * (contact.tilt + s / c * contact.transfer) - 2.0 * creep * (
+        f23 * turn * c / r + T * contact.transfer + contact.f23_growth * s / r * terms.spin
     )
-    yaw = 2.0 * f23 + (2.0 * side * c - load * s / c) * arm
-    K = np.array(
-        [
-            [lateral, -2.0 * f22 * kappa / c],
-            [2.0 * f11 * b * contact.conicity / r - 2.0 * f33 * turn * c**2 / r, yaw],
-        ]
-    )
+    across = 2.0 * f11 * b * contact.conicity / r - 2.0 * f33 * turn * c**2 / r
+    K = np.array([[lateral, -2.0 * creep * f22 / c], [across, 2.0 * f23 + (2.0 * T * c - weight * s / c) * arm]])
     return D, K
 
 
@@ -226,26 +237,32 @@ def pendulum(vehicle: Vehicle) -> Matrix:
     return K
 
 
-def slaved(vehicle: Vehicle) -> Matrix:
-    """From the free coordinates to (y, roll, yaw) of every body: a wheelset rolls by -Gamma y."""
-    columns = []
+def slaved(vehicle: Vehicle, terms: Terms = TEXTBOOK) -> tuple[Matrix, Matrix]:
+    """From the free coordinates to (y, roll, yaw) of every body, and from forces on these to forces on the free ones.
+
+    A wheelset rolls by -Gamma y; forces follow by virtual work, and by the shift of load if that is counted.
+    """
+    columns, forces = [], []
     for name, body in vehicle.bodies.items():
         at = vehicle.place(name)
         block = np.zeros((DOFS * len(vehicle.bodies), DOFS))
         block[at : at + DOFS] = np.eye(DOFS)
+        force = block.copy()
         if isinstance(body, Wheelset):
             block[at + 1, 0] = -body.contact.roll
-            block = block[:, [0, 2]]
+            force[at + 1, 0] = -body.contact.roll + shift_of_load(body.contact, terms)[1]
+            block, force = block[:, [0, 2]], force[:, [0, 2]]
         columns.append(block)
-    return np.hstack(columns)
+        forces.append(force)
+    return np.hstack(columns), np.hstack(forces).T
 
 
-def matrices(vehicle: Vehicle, speed: float, terms: Drop = ALL) -> tuple[Matrix, Matrix, Matrix]:
+def matrices(vehicle: Vehicle, speed: float, terms: Terms = TEXTBOOK) -> tuple[Matrix, Matrix, Matrix]:
     """M, D and K in the free coordinates, without the series dampers."""
-    T = slaved(vehicle)
+    T, L = slaved(vehicle, terms)
     inertia = [v for body in vehicle.bodies.values() for v in (body.mass, body.roll, body.yaw)]
     K = elastic(vehicle) + (pendulum(vehicle) if terms.gravity else 0.0)
-    M, K = T.T @ np.diag(inertia) @ T, T.T @ K @ T
+    M, K = L @ np.diag(inertia) @ T, L @ K @ T
     D = np.zeros_like(M)
     at = 0
     for body in vehicle.bodies.values():
@@ -258,20 +275,19 @@ def matrices(vehicle: Vehicle, speed: float, terms: Drop = ALL) -> tuple[Matrix,
     return M, D, K
 
 
-def state_matrix(vehicle: Vehicle, speed: float, terms: Drop = ALL) -> Matrix:
+def state_matrix(vehicle: Vehicle, speed: float, terms: Terms = TEXTBOOK) -> Matrix:
     """A of x' = A x with x = (q, q', damper forces)."""
     M, D, K = matrices(vehicle, speed, terms)
-    T = slaved(vehicle)
-    rows = [deflection(vehicle, d.joint)[d.axis] @ T for d in vehicle.dampers]
-    R = np.array(rows).reshape(len(rows), len(M))
+    T, L = slaved(vehicle, terms)
+    rows = [deflection(vehicle, d.joint)[d.axis] for d in vehicle.dampers]
+    R = np.array(rows).reshape(len(rows), len(T))
     k = np.array([d.series for d in vehicle.dampers])
     c = np.array([d.damping for d in vehicle.dampers])
     n, m = len(M), len(rows)
-    inverse = np.linalg.inv(M)
     A = np.zeros((2 * n + m, 2 * n + m))
     A[:n, n : 2 * n] = np.eye(n)
-    A[n : 2 * n] = np.hstack([-inverse @ K, -inverse @ D, -inverse @ R.T])
-    A[2 * n :, n : 2 * n] = k[:, None] * R
+    A[n : 2 * n] = np.linalg.solve(M, np.hstack([-K, -D, -L @ R.T]))
+    A[2 * n :, n : 2 * n] = k[:, None] * (R @ T)
     A[2 * n :, 2 * n :] = -np.diag(k / c) if m else 0.0
     return A
 
