@@ -7,8 +7,9 @@ import json
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
+from tests.linear.modes import Complex, oscillations
 from tests.linear.specs import Spec
-from tests.linear.textbook import Complex, Matrix, oscillations
+from tests.linear.textbook import Matrix
 
 from klingel.core import core
 

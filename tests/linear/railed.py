@@ -1,5 +1,5 @@
-"""Wheels on rails for the linear tests: profiles of arcs, contact numbers read off the package's pair, hand-made specs.
-The textbook gets places, angles, radii and ellipses from here, and Kalker's coefficients; never forces of the package."""
+"""Wheels on rails for the linear tests: profiles of arcs, contact numbers read off the package's pair.
+The textbook gets places, angles, radii, ellipses and Kalker's coefficients from here; never the package's forces."""
 
 from __future__ import annotations
 
@@ -21,7 +21,11 @@ STEP = 1e-5
 
 
 def arc_wheel(angle: float, radius: float, middle_at: float = 0.00303) -> Profile:
-    """A hollow tread of one arc that has the slope `angle` where 60E1 at 1:40 touches a cone, then root, flank and tip."""
+    """A hollow tread of one arc, then root, flank and tip of a flange.
+
+    angle: slope of the tread where the rail shall touch it, `middle_at` outside the tape circle [m]: 3 mm are where
+    60E1 at 1:40 touches a cone of that slope; radius: of the arc [m].
+    """
     field, step = 0.05, 2e-4
     points, slope = [], angle - (field - middle_at) / radius
     y, z = field, 0.0

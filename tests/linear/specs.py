@@ -1,5 +1,5 @@
 """Hand-made specs for the linear tests, each with its twin for the textbook: a guided wheelset and a guided bogie.
-The guide is a body too heavy to move, which holds the speed. Gravity is so weak that it weighs no more than the load."""
+The guide is a body too heavy to move, which holds the speed; gravity is so weak that it weighs as much as the load."""
 
 from __future__ import annotations
 

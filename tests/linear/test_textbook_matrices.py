@@ -1,11 +1,12 @@
 """The textbook matrices against exact solutions, before anything is compared with them.
-Klingel's wave, the closed critical speed of a guided wheelset, the height of a wheelset on arcs, pendulum, rigid motions."""
+Klingel's wave, the critical speed of a guided wheelset, the height of a wheelset on arcs, pendulum, rigid motions."""
 
 import math
 
 import numpy as np
 import pytest
 from tests.linear import textbook
+from tests.linear.modes import critical_speed, oscillations
 from tests.linear.textbook import Body, Contact, Joint, Matrix, Spring, Terms, Vehicle, Wheelset
 from tests.linear.textbook_vehicles import coach
 
@@ -26,7 +27,7 @@ def test_slow_wheelset_runs_in_klingels_wave() -> None:
     """1e-6: inertia changes the wave with the square of the speed."""
     for contact in (textbook.plain(LOAD, B, R0, 0.05, *F[:2]), textbook.arcs(LOAD, B, R0, 0.025, math.inf, RAIL, F)):
         A = textbook.state_matrix(guided(contact, 0.0, 0.0), 0.1, BARE)
-        (wave,) = textbook.oscillations(A, 1e-3)
+        (wave,) = oscillations(A, 1e-3)
         length = 2.0 * math.pi * math.sqrt(B * R0 * contact.slip * math.cos(contact.angle) / contact.conicity)
         assert 2.0 * math.pi * 0.1 / wave.imag == pytest.approx(length, rel=1e-6)
 
@@ -40,7 +41,7 @@ def test_guided_wheelset_has_its_closed_critical_speed() -> None:
     steer = 4.0 * contact.f11 * contact.f22 * B * contact.conicity / R0
     rest = a1 * mass * inertia / a3 + (lateral * yaw + steer) * a3 / a1 - mass * yaw - inertia * lateral
     vehicle = guided(contact, lateral, yaw)
-    found = textbook.critical_speed(lambda V: textbook.state_matrix(vehicle, V, BARE), 20.0, 300.0)
+    found = critical_speed(lambda V: textbook.state_matrix(vehicle, V, BARE), 20.0, 300.0)
     assert found == pytest.approx(math.sqrt(c1 * c2 / rest), rel=1e-5)
 
 
@@ -52,7 +53,7 @@ def test_weight_and_roll_follow_from_two_pairs_of_arcs(wheel: float) -> None:
     roll, height = zip(*(standing(angle, wheel, y) for y in (-2e-5, 0.0, 2e-5)), strict=True)
     assert (roll[2] - roll[0]) / 4e-5 == pytest.approx(-contact.roll, rel=1e-4)
     lift = -(height[2] - 2.0 * height[1] + height[0]) / 4e-10
-    D, K = textbook.wheelset_contact(contact, 10.0, 0.0, Terms(spin=False))
+    _, K = textbook.wheelset_contact(contact, 10.0, 0.0, Terms(spin=False))
     assert K[0, 0] == pytest.approx(2.0 * LOAD * lift, rel=1e-4)
 
 
@@ -87,7 +88,7 @@ def test_body_on_a_rope_is_a_pendulum() -> None:
     hinge = Joint(None, "body", (0.0, 0.0, 3.0))
     spring = Spring(hinge, (0.0, 1e12, 0.0), (0.0, 1e6), load=-mass * textbook.GRAVITY)
     A = textbook.state_matrix(Vehicle({"body": Body(mass, inertia, 1.0, 0.0, 3.0 - arm)}, [spring]), 1.0)
-    swing = textbook.oscillations(A)[0]
+    swing = oscillations(A)[0]
     assert swing.imag == pytest.approx(math.sqrt(mass * textbook.GRAVITY * arm / (inertia + mass * arm**2)), rel=1e-6)
 
 

@@ -1,17 +1,16 @@
-"""Textbook matrices of the lateral motion of railway vehicles, for tests and validation only (Wickens; Garg, Dukkipati).
+"""Textbook matrices of vehicles' lateral motion (Wickens; Garg & Dukkipati), for tests and validation only.
 Derived in docs/theory/linear_vehicle.md; nothing here uses the package: M q'' + D q' + K q + series dampers = 0."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 Matrix = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Triple = tuple[float, float, float]
 
 GRAVITY = 9.81
@@ -24,8 +23,8 @@ class Contact:
     """Right-hand contact of a centred wheelset, and how it moves with the wheelset's shift y to the right.
 
     load: vertical force of the wheel [N]; half_distance: of the contacts [m]; radius: rolling radius [m]; angle: of the
-    contact plane, positive rising to the field side [rad]; conicity: growth of the rolling radius per shift; roll: of the
-    wheelset per shift, its right side rising [rad/m]; tilt: growth of the angle per shift, in the track [rad/m];
+    contact plane, positive rising to the field side [rad]; conicity: growth of the rolling radius per shift; roll: of
+    the wheelset per shift, its right side rising [rad/m]; tilt: growth of the angle per shift, in the track [rad/m];
     f11, f22 [N], f23 [N m], f33 [N m2]: Kalker's coefficients of one wheel, G a b C11 and so on; f23_growth: of f23 per
     shift at a constant load [N], which arcs do not have.
     """
@@ -65,7 +64,7 @@ def plain(load: float, half_distance: float, radius: float, conicity: float, f11
 def arcs(
     load: float, half_distance: float, radius: float, angle: float, wheel: float, rail: float, f: Sequence[float]
 ) -> Contact:
-    """A wheel arc (hollow, radius `wheel` [m], infinite for a cone) on a rail arc of radius `rail` [m]; f: f11 to f33."""
+    """A wheel's hollow arc (radius `wheel` [m], infinite for a cone) on a rail's arc (`rail` [m]); f: f11 to f33."""
     c, s = math.cos(angle), math.sin(angle)
     roll = s / (half_distance * c - radius * s)
     rest = c + roll * (rail + radius * c + half_distance * s)
@@ -154,7 +153,7 @@ class Joint:
 
 @dataclass(frozen=True)
 class Spring:
-    """Stiffness along x, y, z [N/m], about x and z [N m/rad]; `load` is the vertical force that a bears on b, down [N]."""
+    """Stiffness along x, y, z [N/m], about x and z [N m/rad]; load: the force down that it bears on b [N]."""
 
     joint: Joint
     stiffness: Triple = (0.0, 0.0, 0.0)
@@ -290,28 +289,3 @@ def state_matrix(vehicle: Vehicle, speed: float, terms: Terms = TEXTBOOK) -> Mat
     A[2 * n :, n : 2 * n] = k[:, None] * (R @ T)
     A[2 * n :, 2 * n :] = -np.diag(k / c) if m else 0.0
     return A
-
-
-def oscillations(A: Matrix, slowest: float = 1.0) -> Complex:
-    """Eigenvalues above the real axis that are faster than `slowest` [rad/s], from the slowest."""
-    values = np.linalg.eigvals(A)
-    kept = values[values.imag > slowest]
-    return kept[np.argsort(kept.imag)]
-
-
-def critical_speed(A: Callable[[float], Matrix], low: float, high: float, *, step: float = 1.0) -> float:
-    """The lowest speed [m/s] from which an oscillation grows, by steps and bisection; infinite if none does."""
-
-    def grows(speed: float) -> bool:
-        return bool(oscillations(A(speed)).real.max() > 0.0)
-
-    speed = low
-    while not grows(speed):
-        speed += step
-        if speed > high:
-            return math.inf
-    below, above = speed - step, speed
-    while above - below > 1e-4:
-        middle = 0.5 * (below + above)
-        below, above = (below, middle) if grows(middle) else (middle, above)
-    return above

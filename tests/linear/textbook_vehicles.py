@@ -1,10 +1,12 @@
-"""Three vehicles for the textbook matrices: a guided wheelset, a bogie of two, the 17-degree lateral coach.
-Numbers come in as arguments; the coach reads its data from a vehicle description, not from its lowered spec."""
+"""The coach for the textbook matrices: 17 lateral degrees of freedom.
+Its numbers come from the vehicle's description, not from its lowered spec."""
 
 from __future__ import annotations
 
-from klingel.vehicle import Vehicle as Description
 from tests.linear.textbook import GRAVITY, Body, Contact, Damper, Joint, Spring, Triple, Vehicle, Wheelset
+
+from klingel.vehicle import Vehicle as Description
+from klingel.vehicle.suspension import DirectionalDamping, DirectionalStiffness
 
 SIDES = (-1.0, 1.0)
 
@@ -64,6 +66,6 @@ def secondary(v: Description, frame: str, x: float, *, yaw_dampers: bool) -> tup
     return springs, dampers
 
 
-def triple(axes: object) -> Triple:
+def triple(axes: DirectionalStiffness | DirectionalDamping) -> Triple:
     """x, y and z of a description's entry."""
     return (axes.x, axes.y, axes.z)
