@@ -2,7 +2,7 @@
 
 use crate::bogie::bogie;
 use crate::common::Plant;
-use klingel_engine::steady::Pass;
+use klingel_engine::pass::Pass;
 use klingel_engine::{linearise, steady};
 use serde_json::json;
 
