@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from klingel.plot.style import INK, PALE, styled
+from validation.creep_table import spin
 from validation.creep_table.case import MOST, RMS_LIMIT
 from validation.creep_table.points import ENDS, points
 from validation.exact_theory.scaled import HALF, Values, off, off_moment, rms
@@ -43,8 +44,11 @@ def drawn() -> Figure:
         kinds.set_xticks([0, 15, 30, 45, 60, 90])
         kinds.set_xlabel("0: creepage only,  90: spin only  [°]")
         mesh = _map(ratios, RATIOS, ratio, place, error)
-        figure.colorbar(mesh, ax=[kinds, ratios], label="largest |ΔF|/(μN)  [%]", pad=0.01)
+        figure.colorbar(mesh, ax=[kinds, ratios], label="largest |ΔF|/(μN)  [%]", pad=0.01, extend="max")
         _spread(force, ratio, error, "|ΔF|/(μN)  [%]")
+        _, lines = spin.points()
+        alone = lines.assign(error=100 * off(lines, "table")).groupby("aob")["error"].max()
+        force.semilogy(alone.index, alone, "D", color=INK, mfc="none", ls="", ms=3.5, label="largest, spin alone")
         force.axhline(100 * RMS_LIMIT, color=INK, lw=0.8, ls=(0, (1, 1.5)))
         force.axhline(100 * MOST, color=INK, lw=0.8, ls=(0, (5, 1.8)), label="limits")
         _spread(turning, ratio, moment, "|ΔMz|/(μN c)  [%]")
