@@ -75,7 +75,9 @@ def _spin() -> Iterator[Row]:
     yield Row.at_most("some points with spin solved again", "spin.csv", resolved(solved), 2e-5)
     error, asked = off(random, "table"), random["aob"].between(*ASKED).to_numpy()
     yield Row.at_most("forces where spin leads, a/b 0.05 to 25", "exact 40 x 40", rms(error[asked]), RMS_LIMIT)
-    yield Row.at_most("forces where spin leads, a/b 0.05 to 25, largest", "exact 40 x 40", float(error[asked].max()), MOST)
+    yield Row.at_most(
+        "forces where spin leads, a/b 0.05 to 25, largest", "exact 40 x 40", float(error[asked].max()), MOST
+    )
     yield Row.shown("forces where spin leads, all, largest", "exact 40 x 40", float(error.max()))
     for ratio, line in lines.groupby("aob"):
         yield Row.at_most(f"spin alone, a/b {ratio:g}, largest", "exact 40 x 40", float(off(line, "table").max()), MOST)

@@ -1,4 +1,4 @@
-"""Creepages in which spin leads, off every grid, and their exact forces: where a spline over creepages has most to bend.
+"""Creepages in which spin leads, off every grid, and their exact forces: where a spline has most to bend.
 Writes spin.csv: python -m validation.creep_table.spin (some minutes; it gives the same file again)."""
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ SIZES: Values = np.geomspace(0.3, 150.0, 48)
 """|v| along each."""
 ABOUT = (
     "Creep forces by Klingel's own solver of the exact theory, 40 x 40 elements, nu 0.28, where spin leads.",
-    f"python -m validation.creep_table.spin: seed {SEED}; {COUNT} random creepages, ln(a/b) uniform from 1/36 to 36, the",
-    "angle of the scaled creepage v above the plane of xi and eta uniform, so that half of them have more spin than",
-    "creepage, |v| = 1.5 t/(1 - t) with t uniform from 0 to 1; then lines of pure spin, |v| from 0.3 to 150.",
+    f"python -m validation.creep_table.spin: seed {SEED}; {COUNT} random creepages, ln(a/b) uniform from 1/36 to 36,",
+    "the angle of the scaled creepage v above the plane of xi and eta uniform, so that half of them have more spin",
+    "than creepage, |v| = 1.5 t/(1 - t) with t uniform from 0 to 1; then lines of pure spin, |v| from 0.3 to 150.",
     "Columns and units as in exact.csv.",
 )
 
@@ -32,7 +32,9 @@ def drawn() -> pd.DataFrame:
     """The points in the digits that the file has, so that what is solved is what is written."""
     chance = np.random.default_rng(SEED)
     ratio = np.exp(chance.uniform(np.log(ENDS[0]), np.log(ENDS[1]), COUNT))
-    t, turn, lift = (chance.uniform(low, high, COUNT) for low, high in ((0, 1), (0, 2 * np.pi), (-np.pi / 2, np.pi / 2)))
+    t, turn, lift = (
+        chance.uniform(low, high, COUNT) for low, high in ((0, 1), (0, 2 * np.pi), (-np.pi / 2, np.pi / 2))
+    )
     v = HALF * t / (1.0 - t) * np.stack([np.cos(lift) * np.cos(turn), np.cos(lift) * np.sin(turn), np.sin(lift)])
     alone = np.stack([np.zeros(len(LINES) * len(SIZES))] * 2 + [np.tile(SIZES, len(LINES))])
     ratio, v = np.append(ratio, np.repeat(LINES, len(SIZES))), np.hstack([v, alone])

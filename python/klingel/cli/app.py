@@ -118,9 +118,7 @@ def contact_table(
     intervals: Annotated[
         str | None, typer.Option(help="Of three creepages and of the semi-axes' ratio, such as 12x16x40x22.")
     ] = None,
-    poisson: Annotated[
-        float | None, typer.Option(help="Poisson's ratio of both bodies.", show_default="0.28")
-    ] = None,
+    poisson: Annotated[float | None, typer.Option(help="Poisson's ratio of both bodies.", show_default="0.28")] = None,
     check: Annotated[bool, typer.Option("--check", help="Check the built-in table instead, as it was made.")] = False,
 ) -> None:
     """Make the table of creep forces with exact theory, on all cores; another start goes on where the last one ended.
