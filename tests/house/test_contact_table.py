@@ -91,7 +91,7 @@ def test_the_core_refuses_parts_that_do_not_belong(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--elements", "40"], "elements = '40': is not 2 whole numbers; give them as 12x16"),
+        (["--elements", "40"], "elements = '40': is not 2 whole numbers of up to four digits; give them as 12x16"),
         (["--elements", "41x40"], "not an even number"),
         (["--intervals", "12x16x40"], "is not 4 whole numbers"),
         (["--intervals", "12x16x400000000000000000000x22"], "is not 4 whole numbers of up to four digits"),
