@@ -147,7 +147,7 @@ fn patch<S: Scalar>([a, b, normal_force, friction, xi, eta, phi]: [S; 7]) -> Rol
 #[test]
 fn vanishing_creepages_give_the_slopes_of_the_solver() {
     // The exact force bends at rest, as v |v|; the spline has the mean slope over half a step. Measured: C11 and C22 within
-    // 1.2 %, C23 2 to 3.6 %, the moments 1 to 5 %.
+    // 1.2 %, C23 1.2 %, the moments 1 to 5 %.
     let law = law();
     for ratio in [0.05, 0.2, 1.0, 5.0, 25.0] {
         let ellipse = Exact::new(ratio, 0.28, [40, 40]).unwrap();
@@ -164,7 +164,7 @@ fn vanishing_creepages_give_the_slopes_of_the_solver() {
         let unit = |i: usize| if i == 2 { mean } else { 1.0 };
         for start in [[0.0; 3], [1e-9, 0.0, 0.0], [0.0, -1e-9, 1e-7]] {
             let f = at(start);
-            for (i, j, most) in [(0, 0, 0.02), (1, 1, 0.02), (1, 2, 0.04), (2, 1, 0.06), (2, 2, 0.04)] {
+            for (i, j, most) in [(0, 0, 0.02), (1, 1, 0.02), (1, 2, 0.02), (2, 1, 0.06), (2, 2, 0.02)] {
                 let slope = f[i].slope[j] / (stiffness * unit(i) * unit(j));
                 let error = (slope - exact[i][j]).abs() / exact[i][j].abs();
                 assert!(error < most, "{ratio} {i} {j}: {slope} {}", exact[i][j]);
