@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.ticker import MultipleLocator
+from matplotlib.ticker import MaxNLocator, MultipleLocator
 from numpy.typing import NDArray
 
 from klingel.plot.style import INK, PALE, panels, styled
@@ -24,17 +24,20 @@ if TYPE_CHECKING:
 LINES: Sequence[tuple[str, str | tuple[int, tuple[float, ...]]]] = (
     ("#000000", "-"),
     ("#0072B2", (0, (5, 1.8))),
-    ("#D55E00", (0, (4, 1.4, 1, 1.4))),
-    ("#009E73", (0, (1.2, 1.2))),
-    ("#CC79A7", (0, (8, 2))),
+    ("#009E73", (0, (4, 1.4, 1, 1.4))),
+    ("#CC79A7", (0, (1.2, 1.2))),
+    ("#56B4E9", (0, (8, 2))),
 )
 """Colours of Okabe and Ito, each with its own line style."""
 
+SIMULATED = "#D55E00"
+"""Of points that the simulator answered."""
+
 KIND_LOOKS: Mapping[str, tuple[str, str | tuple[int, tuple[float, ...]]]] = {
-    "vertical": LINES[1],
-    "alignment": LINES[2],
-    "crosslevel": LINES[3],
-    "gauge": LINES[4],
+    "vertical": ("#0072B2", (0, (5, 1.8))),
+    "alignment": ("#D55E00", (0, (4, 1.4, 1, 1.4))),
+    "crosslevel": ("#009E73", (0, (1.2, 1.2))),
+    "gauge": ("#CC79A7", (0, (8, 2))),
 }
 """Of the irregularities, the same in every figure."""
 
@@ -61,7 +64,7 @@ def bode(
 ) -> Figure:
     """Bode diagram: magnitude and phase over frequency, and coherence with the simulator if there is a measurement.
 
-    curves: at most five; unit: of the magnitude, output over input; measured: response measured on the simulator, drawn
+    curves: one to five; unit: of the magnitude, output over input; measured: response measured on the simulator, drawn
     as points for its channel `output` (the only one if it has one).
     """
     with styled():
@@ -77,6 +80,8 @@ def bode(
         phase.set_ylabel("phase  [°]")
         phase.yaxis.set_major_locator(_quarter_turns(phase))
         size.legend(loc="best", handlelength=3.0)
+        ends = [each.frequencies[[0, -1]] for each in curves]
+        axes[-1].set_xlim(min(low for low, _ in ends), max(high for _, high in ends))
         axes[-1].set_xlabel("frequency  [Hz]")
         return figure
 
@@ -91,15 +96,14 @@ def _measured(axes: Sequence[Axes], measured: Measured, output: str, curves: Seq
     column = measured.outputs.index(output) if output else 0
     f, values = measured.frequencies, measured.response[:, column]
     phase = np.degrees(np.angle(values))
-    if curves:
-        near = np.interp(f, curves[0].frequencies, _degrees(curves[0].values))
-        phase = phase + 360.0 * np.round((near - phase) / 360.0)
+    near = np.interp(f, curves[0].frequencies, _degrees(curves[0].values))
+    phase = phase + 360.0 * np.round((near - phase) / 360.0)
     look: dict[str, Any] = {
         "ls": "",
         "marker": "o",
         "ms": 3.0,
         "mfc": "white",
-        "mec": "#D55E00",
+        "mec": SIMULATED,
         "mew": 0.9,
         "zorder": 3,
     }
@@ -138,7 +142,7 @@ def spectrum(
             axis.loglog(*simulated, color=PALE, lw=1.0, label="simulated", zorder=1)
         axis.loglog(f, total, color=INK, lw=1.9, label="all", zorder=4)
         for kind, share in response.shares.items():
-            if share[:, column].max() > 10.0**-DECADES * total.max():
+            if len(response.shares) > 1 and share[:, column].max() > 10.0**-DECADES * total.max():
                 color, line = KIND_LOOKS[kind]
                 axis.loglog(f, share[:, column], color=color, ls=line, lw=1.3, label=kind, zorder=3)
         axis.set_xlim(f[0], f[-1])
@@ -167,6 +171,7 @@ def effects(table: pd.DataFrame, column: str, *, title: str, unit: str, count: i
             axis.barh(places[some], shown[some], color=color, hatch=hatch, edgecolor=INK, lw=0.6, height=0.72)
         axis.set_yticks(places, labels)
         axis.axvline(0.0, color=INK, lw=0.7)
+        axis.xaxis.set_major_locator(MaxNLocator(6))
         axis.grid(axis="y", visible=False)
         axis.set_xlabel(f"change for a parameter 1 % larger  [{unit}]")
         return figure
