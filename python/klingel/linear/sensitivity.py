@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from klingel.errors import InputError
 from klingel.linear.linearise import linearise
 from klingel.linear.model import LinearModel
+from klingel.linear.operating import steady_state
 from klingel.linear.parameters import get, names, replace, unit
-from klingel.linear.steady import steady_state
 
 if TYPE_CHECKING:
     import pandas as pd
