@@ -94,9 +94,7 @@ class LinearModel:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers and strings, ready for JSON."""
-        signals = {
-            kind: [[s.name, s.unit] for s in getattr(self, kind)] for kind in ("states", "inputs", "outputs")
-        }
+        signals = {kind: [[s.name, s.unit] for s in getattr(self, kind)] for kind in ("states", "inputs", "outputs")}
         matrices = {key: getattr(self, key).tolist() for key in ("A", "B", "C", "D", "x", "u", "y")}
         head = {"name": self.name, "speed": self.speed, "sample_time": self.sample_time}
         return head | signals | matrices | {"warnings": list(self.warnings)}
@@ -119,8 +117,7 @@ class LinearModel:
         content = matrices | cells | {"Ts": Ts, "speed": self.speed, "name": self.name}
 
         def write(part: Path) -> None:
-            with part.open("wb") as file:
-                savemat(file, content, oned_as="column", do_compression=True)
+            savemat(str(part), content, appendmat=False, oned_as="column", do_compression=True)
 
         return _whole(Path(path), write)
 
