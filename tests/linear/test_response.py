@@ -1,5 +1,7 @@
 """Frequency responses: closed forms, direct solves, sampled models, irregularities, loops, and measured ones."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -93,13 +95,13 @@ def test_wheels_meet_the_irregularity_one_after_the_other() -> None:
 
 
 def test_a_sampled_model_meets_the_same_irregularity() -> None:
-    """What it holds, the track does not: the delay of half a sample is taken out."""
-    slow = F[F < 10.0]
-    sampled = held(beam(), 1e-3)
-    sampled = LinearModel(**{**sampled.__dict__, "speed": 30.0})
-    exact = frequency_response(beam(), irregularity(beam(), "vertical", slow), "z", slow)
-    found = frequency_response(sampled, irregularity(sampled, "vertical", slow), "z", slow)
-    np.testing.assert_allclose(found, exact, rtol=5e-3)
+    """What a sampled model holds, the track does not: with the plant, its response is that of the plant."""
+    sampled = dataclasses.replace(held(beam(), 5e-3), speed=30.0)
+    weights = irregularity(sampled, "vertical", F)
+    exact = frequency_response(beam(), weights, "z", F)
+    np.testing.assert_allclose(frequency_response(sampled, weights, "z", F, plant=beam()), exact, rtol=1e-9)
+    with pytest.raises(InputError, match="is not the continuous part"):
+        frequency_response(sampled, weights, "z", F, plant=sampled)
 
 
 def test_kinds_move_the_rails_as_defined() -> None:

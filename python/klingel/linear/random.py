@@ -13,7 +13,7 @@ from scipy.interpolate import PchipInterpolator
 
 from klingel.errors import InputError
 from klingel.linear.model import LinearModel, Signal
-from klingel.linear.response import frozen, input_weights, irregularity, points, positions
+from klingel.linear.response import all_outputs, input_weights, irregularity, points, positions
 from klingel.track.irregularity import RAILS, Course, Kind, Quality
 
 Real = NDArray[np.float64]
@@ -60,14 +60,19 @@ def random_response(
     outputs: Sequence[str] | None = None,
     frequencies: ArrayLike | None = None,
     behind: Mapping[str, float] | None = None,
+    plant: LinearModel | None = None,
 ) -> RandomResponse:
     """Spectra of the outputs, S_y(f) = sum over the kinds of |G(f)|^2 S(f), the kinds being independent.
 
     model: stable, with the irregularity inputs; quality: of the track; outputs: names, None for all; frequencies: [Hz],
     rising, None for a grid that resolves the resonances and the delays between the wheelsets; behind: of
-    `irregularity`. Errors: InputError, also for frequencies outside the valid wavelengths at the model's speed, and for
-    an unstable model, which has no stationary response.
+    `irregularity`; plant: the continuous model that a sampled one was made from. Errors: InputError, also for
+    frequencies outside the valid wavelengths at the model's speed, for a sampled model without plant, and for an
+    unstable model, which has no stationary response.
     """
+    if model.sample_time is not None and plant is None:
+        remedy = "give plant=linearise(..., controllers=False) of the same scenario"
+        raise InputError.single("plant", None, "is missing: the track goes on between samples", remedy=remedy)
     _check_stable(model)
     chosen = model if outputs is None else model.select(outputs=outputs)
     f = _frequencies(model, quality, behind) if frequencies is None else np.atleast_1d(np.asarray(frequencies, float))
@@ -76,7 +81,7 @@ def random_response(
     at = positions(model) if behind is None else behind
     densities = {kind: each.over_frequency(f, speed=model.speed) for kind, each in quality.spectra.items()}
     inputs = [input_weights(model, irregularity(model, kind, f, behind=at), len(f)) for kind in densities]
-    G = frozen(chosen, points(model, f), np.stack(inputs, axis=-1))
+    G = all_outputs(chosen, points(model, f), np.stack(inputs, axis=-1), plant=plant)
     shares = {kind: (np.abs(G[:, :, i]) ** 2 * S).T for i, (kind, S) in enumerate(densities.items())}
     return RandomResponse(quality.name, model.speed, f, chosen.outputs, shares)
 

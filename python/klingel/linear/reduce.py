@@ -26,13 +26,13 @@ MARGINAL = 1e-4
 class Parts:
     """A model as the sum of two: kept (does not decay, or too slowly to tell) and decaying.
 
-    kept, decaying: (A, B, C); hankel: Hankel singular values of the decaying part, the largest first, in units of an
-    output's scale over an input's scale.
+    kept: (A, B, C), sampled if the model is; decaying: (A, B, C, D), continuous, by the bilinear map of a sampled one;
+    left, right: what balances it; hankel: its Hankel singular values, the largest first, in units of an output's scale
+    over an input's scale.
     """
 
     kept: tuple[Real, Real, Real]
-    decaying: tuple[Real, Real, Real]
-    D: Real
+    decaying: tuple[Real, Real, Real, Real]
     left: Real
     right: Real
     hankel: Real
@@ -55,15 +55,15 @@ def reduced(model: LinearModel, order: int, *, scales: Mapping[str, float] | Non
         raise InputError.single("order", order, "is no order for this model", remedy=remedy)
     count = min(order - fixed, int(np.sum(parts.hankel > 0.0)))
     bound = 2.0 * float(np.sum(parts.hankel[count:]))
-    A, B, C = parts.decaying
+    A, B, C, D = parts.decaying
     L, R = parts.left[:, :count], parts.right[:, :count]
-    first = parts.kept
-    A = _diagonal(first[0], L.T @ A @ R)
-    B, C = np.vstack((first[1], L.T @ B)), np.hstack((first[2], C @ R))
-    u, y = _scales(model, scales)
-    B, C, D = B / u, C * y[:, None], parts.D * y[:, None] / u
+    A, B, C = L.T @ A @ R, L.T @ B, C @ R
     if model.sample_time is not None:
         A, B, C, D = to_sampled(A, B, C, D, model.sample_time)
+    first = parts.kept
+    u, y = _scales(model, scales)
+    A, B, C = _diagonal(first[0], A), np.vstack((first[1], B)) / u, np.hstack((first[2], C)) * y[:, None]
+    D = D * y[:, None] / u
     names = [f"kept{i}" for i in range(1, fixed + 1)] + [f"balanced{i}" for i in range(1, count + 1)]
     states = tuple(Signal(name, "1") for name in names)
     return dataclasses.replace(model, states=states, A=A, B=B, C=C, D=D, x=np.zeros(len(names))), bound
@@ -79,16 +79,17 @@ def split(model: LinearModel, scales: Mapping[str, float] | None = None) -> Part
     """The model apart, the decaying part with its balancing: A_reduced = left^T A right and so on."""
     u, y = _scales(model, scales)
     A, B, C, D = model.A, model.B * u, model.C / y[:, None], model.D * u / y[:, None]
-    if model.sample_time is not None:
-        A, B, C, D = to_continuous(A, B, C, D, model.sample_time)
+    ts = model.sample_time
     balanced, (scale, _) = matrix_balance(A, permute=False, separate=True)
-    T, Z, slow = schur(balanced, sort=lambda re, im: re >= -MARGINAL)
+    edge = -MARGINAL if ts is None else np.exp(-MARGINAL * ts)
+    T, Z, slow = schur(balanced, sort=lambda re, im: (re if ts is None else np.hypot(re, im)) >= edge)
     B, C = Z.T @ (B / scale[:, None]), C @ (scale[:, None] * Z)
     X = solve_sylvester(T[:slow, :slow], -T[slow:, slow:], -T[:slow, slow:])
     kept = T[:slow, :slow], B[:slow] - X @ B[slow:], C[:, :slow]
-    decaying = T[slow:, slow:], B[slow:], C[:, slow:] + C[:, :slow] @ X
-    left, right, hankel = _balancing(*decaying)
-    return Parts(kept, decaying, D, left, right, hankel)
+    decaying = T[slow:, slow:], B[slow:], C[:, slow:] + C[:, :slow] @ X, D
+    if ts is not None:
+        decaying = to_continuous(*decaying, ts)
+    return Parts(kept, decaying, *_balancing(*decaying[:3]))
 
 
 def _balancing(A: Real, B: Real, C: Real) -> tuple[Real, Real, Real]:
@@ -137,13 +138,9 @@ def _upper(B: Complex) -> Complex:
 
 
 def to_continuous(A: Real, B: Real, C: Real, D: Real, T: float) -> tuple[Real, Real, Real, Real]:
-    """s = (2/T) (z - 1)/(z + 1): keeps Hankel values and norms. Errors: InputError for an eigenvalue at z = -1."""
+    """s = (2/T) (z - 1)/(z + 1) of a model without eigenvalues at z = -1: keeps Hankel values and norms."""
     n = len(A)
-    plus = A + np.eye(n)
-    if n and np.linalg.cond(plus) > 1e14:
-        message = "the model has an eigenvalue at z = -1"
-        raise InputError.single("A", None, message, remedy="reduce the continuous model")
-    inverse = np.linalg.inv(plus)
+    inverse = np.linalg.inv(A + np.eye(n))
     gain = 2.0 / np.sqrt(T)
     return (
         np.asarray(2.0 / T * (A - np.eye(n)) @ inverse),

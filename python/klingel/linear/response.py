@@ -113,12 +113,15 @@ def frequency_response(
     input: str | Combination,
     output: str | Combination | Sequence[str | Combination],
     frequencies: ArrayLike,
+    *,
+    plant: LinearModel | None = None,
 ) -> Complex:
     """Response of an output to an input at frequencies [Hz], in units of the output per unit of the input.
 
     input: a name, or weights by name (such as +1 and -1 of two motors; arrays are over the frequencies, see
     `irregularity`); output: the same, or a sequence of them. Returns an array (frequencies), for a sequence
-    (frequencies, outputs). A sampled model answers at its samples to an input held between them.
+    (frequencies, outputs). A sampled model answers at its samples to an input held between them; with plant, the
+    continuous model that it was made from, to one that goes on between them, as the track does.
     Errors: InputError for unknown names, frequencies that a sampled model does not have, and those of undamped modes.
 
     >>> one = lambda v: np.array([[v]])
@@ -131,18 +134,34 @@ def frequency_response(
     several = not isinstance(output, (str, Mapping))
     wanted = cast("list[str | Combination]", list(output) if several else [output])
     u = input_weights(model, input, len(s))
-    direct = frozen(model, s, u[:, :, None])[:, :, 0]
+    direct = all_outputs(model, s, u[:, :, None], plant=plant)[:, :, 0]
     rows = [np.sum(output_weights(model, each, len(s)) * direct, axis=0) for each in wanted]
     return np.stack(rows, axis=-1) if several else rows[0]
 
 
-def frozen(model: LinearModel, s: Complex, u: Complex) -> Complex:
-    """All outputs (p, f, k) at points s (f) to inputs u (m, f, k)."""
-    m, f, k = u.shape
-    b = (model.B @ u.reshape(m, -1)).reshape(-1, f, k)
+def all_outputs(model: LinearModel, s: Complex, u: Complex, *, plant: LinearModel | None = None) -> Complex:
+    """All outputs (p, f, k) at points s (f) to inputs u (m, f, k); plant: of `frequency_response`."""
+    b = _product(model.B, u)
+    if plant is not None:
+        b[: len(plant.A)] = _between_samples(model, plant, s, u)
     x = Resolvent.of(model.A).solve(s, b)
-    y = model.C @ x.reshape(len(x), -1) + model.D @ u.reshape(m, -1)
-    return np.asarray(y.reshape(-1, f, k))
+    return _product(model.C, x) + _product(model.D, u)
+
+
+def _product(matrix: Real, u: Complex) -> Complex:
+    """matrix @ u[:, f, k] for all f, k."""
+    return np.asarray((matrix @ u.reshape(len(u), u.shape[1] * u.shape[2])).reshape(-1, *u.shape[1:]))
+
+
+def _between_samples(model: LinearModel, plant: LinearModel, z: Complex, u: Complex) -> Complex:
+    """What the plant's states get over a sample from inputs u exp(j w t) that are not held: (z I - Phi) X(j w)."""
+    n = len(plant.A)
+    if model.sample_time is None or plant.sample_time is not None or model.states[:n] != plant.states:
+        remedy = "give the sampled model's own plant: the same scenario linearised with controllers=False"
+        raise InputError.single("plant", plant.name, "is not the continuous part of the model", remedy=remedy)
+    jw = 1j * np.angle(z) / model.sample_time
+    X = Resolvent.of(plant.A).solve(np.asarray(jw), _product(plant.B, u))
+    return np.asarray(z[:, None] * X - _product(model.A[:n, :n], X))
 
 
 def input_weights(model: LinearModel, combination: str | Combination, count: int) -> Complex:
@@ -196,30 +215,21 @@ def irregularity(
 
     kind: vertical, alignment, crosslevel or gauge (see `klingel.track.irregularity`); behind: how far each wheel runs
     behind the first one [m], by default from the operating point. A wheel at l meets it as exp(-j w l/V), and its rate
-    j w times that. A sampled model holds its inputs; the track is not held, so its inputs are divided by the response
-    (1 - exp(-j w T))/(j w T) of the hold. Errors: InputError for an unknown kind or missing inputs or positions.
+    j w times that. For a sampled model give its `plant` to the response: rails held between samples would hit the
+    wheels in steps. Errors: InputError for an unknown kind or missing inputs or positions.
     """
     if kind not in KINDS:
         raise InputError.single("kind", kind, "is no irregularity", remedy=nearest(kind, KINDS))
     points(model, frequencies)
     jw: Complex = np.asarray(2j * np.pi * np.atleast_1d(np.asarray(frequencies)), dtype=np.complex128)
     direction, left, right = RAILS[kind]
-    held = _hold(jw, model.sample_time)
-    weights: dict[str, Complex] = {}
+    weights: dict[str, ArrayLike] = {}
     for wheel, distance in (positions(model) if behind is None else behind).items():
         share = left if wheel.endswith("left") else right
-        met = share * np.exp(-jw * distance / model.speed) / held
+        met = share * np.exp(-jw * distance / model.speed)
         weights[f"{wheel}.{direction}"] = met
         weights[f"{wheel}.{direction}_rate"] = jw * met
     return weights
-
-
-def _hold(jw: Complex, sample_time: float | None) -> Complex:
-    """Response of a hold over `sample_time`; 1 for none."""
-    if sample_time is None:
-        return np.ones_like(jw)
-    half = 0.5 * sample_time * jw.imag
-    return np.asarray(np.sinc(half / np.pi) * np.exp(-1j * half))
 
 
 @dataclass(frozen=True)

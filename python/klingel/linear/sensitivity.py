@@ -12,10 +12,10 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from klingel.errors import InputError
-from klingel.linear.linearise import linearise
 from klingel.linear.model import LinearModel
 from klingel.linear.operating import steady_state
 from klingel.linear.parameters import get, names, replace, unit
+from klingel.linear.statespace import linearise
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -215,7 +215,7 @@ def steady_sensitivities(
 
         def steady(p: float, path: str = path) -> Real:
             state = steady_state(replace(scenario, path, p), at=at)
-            return state.values.loc[list(channels)].to_numpy(dtype=np.float64)  # noqa: PD011
+            return np.asarray(state.values.loc[list(channels)], dtype=np.float64)
 
         slope = derivative(steady, value)
         for channel, change, error in zip(channels, slope.value, slope.error, strict=True):
