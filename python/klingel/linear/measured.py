@@ -4,6 +4,7 @@ The input is a sum of sines with random phases that is played twice, settled the
 from __future__ import annotations
 
 import copy
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from klingel.errors import InputError, SimulationError
+from klingel.linear.model import LinearModel
+from klingel.linear.statespace import held
 from klingel.lower import Spec
 from klingel.result import COMPLETED, simulate_spec
 
@@ -46,7 +49,7 @@ def measured_response(
 ) -> Measured:
     """Excite one input of a simulation and estimate the responses of some channels.
 
-    spec: on an endless uniform track, as `lower` gives it otherwise; input: its name as of a linear model; amplitude:
+    spec: on endless track (`klingel.linear.steady_spec`); input: its name as of a linear model; amplitude:
     r.m.s. of what is added to it, small against every kink; band: lowest and highest frequency [Hz]; period: of the
     signal [s], which sets the spacing of the frequencies; interval: over which it is held [s], a multiple of the step;
     courses: how many independent signals are averaged; seed: of the phases.
@@ -76,6 +79,18 @@ def measured_response(
     channels = np.stack([run[name].to_numpy()[: len(played)] for name in outputs])
     settled = channels.reshape(len(outputs), courses, 2, n)[:, :, 1]
     return estimate(input, outputs, signals, settled, interval=interval, band=band)
+
+
+def sampled(model: LinearModel, interval: float) -> LinearModel:
+    """A continuous model at samples, its inputs held over `interval` [s]: what a measured response is compared with.
+
+    Errors: InputError for a model that is sampled already.
+    """
+    if model.sample_time is not None:
+        remedy = "measure with an interval equal to its sample time"
+        raise InputError.single("model", model.sample_time, "is sampled already [s]", remedy=remedy)
+    A, B = held(model, interval)
+    return dataclasses.replace(model, A=A, B=B, sample_time=interval)
 
 
 def random_phases(

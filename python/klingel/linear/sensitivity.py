@@ -215,7 +215,7 @@ def steady_sensitivities(
 
         def steady(p: float, path: str = path) -> Real:
             state = steady_state(replace(scenario, path, p), at=at)
-            return np.asarray(state.values.loc[list(channels)], dtype=np.float64)
+            return np.asarray(state.values.loc[list(channels)], dtype=np.float64)  # noqa: PD011
 
         slope = derivative(steady, value)
         for channel, change, error in zip(channels, slope.value, slope.error, strict=True):
