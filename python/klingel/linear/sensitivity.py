@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from klingel.errors import InputError
 from klingel.linear.model import LinearModel
-from klingel.linear.operating import steady_state
+from klingel.linear.operating import read, solve, steady_spec
 from klingel.linear.parameters import get, names, replace, unit
-from klingel.linear.statespace import linearise
+from klingel.linear.statespace import linearise, of_raw
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,7 +26,7 @@ Real = NDArray[np.float64]
 Function = Callable[[float], NDArray[Any]]
 """Of a parameter's value: an array, real or complex."""
 
-STEP = 0.01
+STEP = 1e-3
 """First step over the parameter."""
 
 ACCURACY = 1e-5
@@ -53,8 +53,9 @@ class Derivative:
 def derivative(function: Function, value: float) -> Derivative:
     """d function/d value by central differences, extrapolated over the halving of their step (Richardson).
 
-    The first step is 1 % of the value. Steps are halved until two extrapolations agree to 1e-5 in every element that
-    matters; each element keeps its best. Errors: InputError for a value of zero, which has no relative step.
+    The first step is 0.1 % of the value. Steps are halved until two extrapolations agree to 1e-5 in every element that
+    matters, or none comes closer any more; each element keeps its best. Errors: InputError for a value of zero, which
+    has no relative step.
 
     >>> cube = derivative(lambda p: np.array([p**3]), 2.0)
     >>> bool(abs(cube.value[0] - 12.0) < 1e-8), bool(cube.error[0] < 1e-5 * 12.0)
@@ -65,21 +66,19 @@ def derivative(function: Function, value: float) -> Derivative:
     floor = FLOOR * np.abs(function(value)) / abs(value)
     steps = [STEP * abs(value) / 2.0**halving for halving in range(HALVINGS + 1)]
     plain = _central(function, value, steps[0])
-    extrapolated: NDArray[Any] | None = None
-    found: Derivative | None = None
-    for step in steps[1:]:
-        halved = _central(function, value, step)
-        better = (4.0 * halved - plain) / 3.0
-        plain = halved
-        if extrapolated is not None:
-            error = np.abs(better - extrapolated)
-            closer = np.ones(error.shape, dtype=bool) if found is None else error < found.error
-            old = Derivative(better, error) if found is None else found
-            found = Derivative(np.where(closer, better, old.value), np.where(closer, error, old.error))
-            if (found.error <= np.maximum(ACCURACY * np.abs(found.value), floor)).all():
-                break
-        extrapolated = better
-    assert found is not None
+    halved = _central(function, value, steps[1])
+    before = (4.0 * halved - plain) / 3.0
+    found = Derivative(before, np.full(before.shape, np.inf))
+    for step in steps[2:]:
+        plain, halved = halved, _central(function, value, step)
+        after = (4.0 * halved - plain) / 3.0
+        error = np.abs(after - before)
+        closer = error < found.error
+        stuck = not (error < 0.5 * found.error).any()
+        found = Derivative(np.where(closer, after, found.value), np.where(closer, error, found.error))
+        if stuck or (found.error <= np.maximum(ACCURACY * np.abs(found.value), floor)).all():
+            break
+        before = after
     return found
 
 
@@ -155,12 +154,14 @@ def eigenvalue_sensitivities(
     """
     if eigenvalues is None:
         eigenvalues = [_least_damped(linearise(scenario, at=at, controllers=controllers))]
+    near = solve(steady_spec(scenario, at=at))
     rows = []
     for path in _paths(scenario, parameters):
         value = get(scenario, path)
 
         def family(p: float, path: str = path) -> LinearModel:
-            return linearise(replace(scenario, path, p), at=at, controllers=controllers)
+            spec = steady_spec(replace(scenario, path, p), at=at)
+            return of_raw(solve(spec, near).linearise(), spec["name"], spec["speed"], controllers=controllers)
 
         found, slope = eigenvalue_derivatives(family, value, eigenvalues)
         for s, change, error in zip(found, slope.value, slope.error, strict=True):
@@ -205,7 +206,8 @@ def steady_sensitivities(
     p d steady/dp in the channel's unit, and `error` of the effect, relative to it. Errors: InputError, also for an
     unknown channel; SimulationError where there is no steady state.
     """
-    base = steady_state(scenario, at=at).values  # noqa: PD011
+    near = solve(steady_spec(scenario, at=at))
+    base = read(near.linearise()).values  # noqa: PD011
     unknown = [channel for channel in channels if channel not in base.index]
     if unknown:
         raise InputError.single("channels", unknown[0], "is no channel", remedy="see the steady state's values")
@@ -214,7 +216,7 @@ def steady_sensitivities(
         value = get(scenario, path)
 
         def steady(p: float, path: str = path) -> Real:
-            state = steady_state(replace(scenario, path, p), at=at)
+            state = read(solve(steady_spec(replace(scenario, path, p), at=at), near).linearise())
             return np.asarray(state.values.loc[list(channels)], dtype=np.float64)  # noqa: PD011
 
         slope = derivative(steady, value)
