@@ -118,16 +118,16 @@ def estimate(
 
     signals: (courses, n); settled: (outputs, courses, n).
     """
-    from scipy.signal import coherence, csd, welch
+    from scipy.signal import csd, welch
 
     n = signals.shape[-1]
     u, y = signals.reshape(-1), settled.reshape(len(settled), -1)
     whole = {"fs": 1.0 / interval, "window": "boxcar", "nperseg": n, "noverlap": 0, "detrend": "constant"}
-    f, Suu = welch(u, **whole)
-    Suy = csd(u, y, **whole)[1]
+    f = welch(u, **whole)[0]
     lines = _lines(f, band)
-    response = (Suy[:, lines] / Suu[lines]).T
-    return Measured(input, tuple(outputs), f[lines], response, coherence(u, y, **whole)[1][:, lines].T, interval)
+    Suu, Syy, Suy = (S[..., lines] for S in (welch(u, **whole)[1], welch(y, **whole)[1], csd(u, y, **whole)[1]))
+    coherence = np.abs(Suy) ** 2 / (Suu * Syy)
+    return Measured(input, tuple(outputs), f[lines], (Suy / Suu).T, coherence.T, interval)
 
 
 def _lines(f: NDArray[np.float64], band: tuple[float, float]) -> NDArray[np.bool_]:

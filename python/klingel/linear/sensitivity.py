@@ -15,7 +15,7 @@ from klingel.errors import InputError
 from klingel.linear.model import LinearModel
 from klingel.linear.operating import read, solve, steady_spec
 from klingel.linear.parameters import get, names, replace, unit
-from klingel.linear.statespace import linearise, of_raw
+from klingel.linear.statespace import of_raw
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,6 +34,9 @@ ACCURACY = 1e-5
 
 FLOOR = 1e-7
 """Relative effects p dv/dp below this share of v are nothing: there the error is not pursued."""
+
+GONE = 1e-3
+"""Sampled eigenvalues below this size are memory of delays, gone within a few samples."""
 
 HALVINGS = 6
 """At most so many; a derivative that still moves sits at a kink of a law or a table, and its error shows it."""
@@ -92,7 +95,7 @@ def eigenvalue_derivatives(
     """Eigenvalues [1/s] and their derivatives by a parameter, d lambda = w* dA v / w* v with left and right vectors.
 
     family: the model over the parameter's value, always with the same states; eigenvalues: those nearest to these, of
-    the model at `value` [1/s]; None for all oscillations. Those of a sampled model are s = ln z/T.
+    the model at `value` [1/s]; None for the least damped oscillation. Those of a sampled model are s = ln z/T.
     Errors: InputError for a repeated eigenvalue, which has no derivative, or a model whose states change.
     """
     model = family(value)
@@ -119,14 +122,12 @@ def _vectors(
 ) -> tuple[NDArray[np.complex128], NDArray[np.complex128], NDArray[np.complex128]]:
     """Chosen eigenvalues [1/s] with left and right vectors, w* v = 1."""
     z, W, V = cast("tuple[NDArray[np.complex128], ...]", scipy.linalg.eig(model.A, left=True, right=True))
-    lasting = np.abs(z) > (1e-9 if model.sample_time is not None else -1.0)
-    z, W, V = z[lasting], W[:, lasting], V[:, lasting]
+    if model.sample_time is not None:
+        lasting = np.abs(z) > GONE
+        z, W, V = z[lasting], W[:, lasting], V[:, lasting]
     s = z if model.sample_time is None else _continuous(z, model.sample_time)
-    if eigenvalues is None:
-        oscillations = np.flatnonzero(s.imag > 1e-6 * np.abs(s))
-        places = oscillations[np.argsort(s[oscillations].imag)]
-    else:
-        places = np.array([int(np.argmin(np.abs(s - each))) for each in eigenvalues], dtype=np.int64)
+    wanted = [_least_damped(s, model.sample_time)] if eigenvalues is None else eigenvalues
+    places = np.array([int(np.argmin(np.abs(s - each))) for each in wanted], dtype=np.int64)
     W, V = W[:, places], V[:, places]
     overlap = np.sum(W.conj() * V, axis=0)
     if (np.abs(overlap) < 1e-10).any():
@@ -152,8 +153,6 @@ def eigenvalue_sensitivities(
     `damping_effect` = p d zeta/dp, and `error` of the effect, relative to it. Errors: InputError; SimulationError where
     there is no operating point.
     """
-    if eigenvalues is None:
-        eigenvalues = [_least_damped(linearise(scenario, at=at, controllers=controllers))]
     near = solve(steady_spec(scenario, at=at))
     rows = []
     for path in _paths(scenario, parameters):
@@ -189,11 +188,13 @@ def _damping_effect(s: complex, ds: complex) -> float:
     return -ds.real / size + s.real * (s.real * ds.real + s.imag * ds.imag) / size**3
 
 
-def _least_damped(model: LinearModel) -> complex:
-    s, _, _ = _vectors(model, None)
-    if len(s) == 0:
+def _least_damped(s: NDArray[np.complex128], sample_time: float | None) -> complex:
+    """The oscillation of least damping ratio; one that changes sign at every sample is none."""
+    highest = np.inf if sample_time is None else 0.999 * np.pi / sample_time
+    oscillations = s[(s.imag > 1e-6 * np.abs(s)) & (s.imag < highest)]
+    if len(oscillations) == 0:
         raise InputError.single("eigenvalues", None, "none of them oscillates", remedy="give the ones you mean")
-    return complex(s[np.argmax(s.real / np.abs(s))])
+    return complex(oscillations[np.argmax(oscillations.real / np.abs(oscillations))])
 
 
 def steady_sensitivities(

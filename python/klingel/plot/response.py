@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.ticker import MaxNLocator, MultipleLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, MultipleLocator, NullFormatter
 from numpy.typing import NDArray
 
 from klingel.plot.style import INK, PALE, panels, styled
@@ -16,6 +16,7 @@ from klingel.plot.style import INK, PALE, panels, styled
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
     from klingel.linear.measured import Measured
@@ -41,6 +42,9 @@ KIND_LOOKS: Mapping[str, tuple[str, str | tuple[int, tuple[float, ...]]]] = {
 }
 """Of the irregularities, the same in every figure."""
 
+POINTS = 24.0
+"""Measured frequencies that are drawn in a decade."""
+
 DECADES = 6.0
 """Of a spectrum that are shown below its largest value."""
 
@@ -64,8 +68,8 @@ def bode(
 ) -> Figure:
     """Bode diagram: magnitude and phase over frequency, and coherence with the simulator if there is a measurement.
 
-    curves: one to five; unit: of the magnitude, output over input; measured: response measured on the simulator, drawn
-    as points for its channel `output` (the only one if it has one).
+    curves: one to five; title: one or two lines; unit: of the magnitude, output over input; measured: response measured
+    on the simulator, drawn as points for its channel `output` (the first if none is given).
     """
     with styled():
         figure, axes = panels(2 if measured is None else 3, height=4.4 if measured is None else 5.4)
@@ -82,6 +86,8 @@ def bode(
         size.legend(loc="best", handlelength=3.0)
         ends = [each.frequencies[[0, -1]] for each in curves]
         axes[-1].set_xlim(min(low for low, _ in ends), max(high for _, high in ends))
+        _plain_ticks(axes[-1].xaxis, *axes[-1].get_xlim())
+        _plain_ticks(size.yaxis, *size.get_ylim())
         axes[-1].set_xlabel("frequency  [Hz]")
         return figure
 
@@ -92,9 +98,10 @@ def _degrees(values: NDArray[np.complex128]) -> NDArray[np.float64]:
 
 
 def _measured(axes: Sequence[Axes], measured: Measured, output: str, curves: Sequence[Curve]) -> None:
-    """Points of the measurement in all panels; their phase in the turn of the first curve."""
+    """Points of the measurement in all panels, thinned where they crowd; phase in the turn of the first curve."""
     column = measured.outputs.index(output) if output else 0
-    f, values = measured.frequencies, measured.response[:, column]
+    some = _thinned(measured.frequencies)
+    f, values = measured.frequencies[some], measured.response[some, column]
     phase = np.degrees(np.angle(values))
     near = np.interp(f, curves[0].frequencies, _degrees(curves[0].values))
     phase = phase + 360.0 * np.round((near - phase) / 360.0)
@@ -109,9 +116,24 @@ def _measured(axes: Sequence[Axes], measured: Measured, output: str, curves: Seq
     }
     axes[0].plot(f, np.abs(values), label="simulated", **look)
     axes[1].plot(f, phase, **look)
-    axes[2].semilogx(f, measured.coherence[:, column], **look)
+    axes[2].semilogx(f, measured.coherence[some, column], **look)
     axes[2].set_ylabel("coherence  [-]")
     axes[2].set_ylim(0.0, 1.05)
+
+
+def _thinned(f: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Places of at most `POINTS` frequencies a decade."""
+    cells = np.floor(np.log10(f) * POINTS)
+    return np.flatnonzero(np.diff(cells, prepend=cells[0] - 1.0) > 0.0)
+
+
+def _plain_ticks(axis: Axis, low: float, high: float) -> None:
+    """Numbers without exponents on a logarithmic axis, with 2 and 5 between the powers of ten where it is short."""
+    short = high < 300.0 * low
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if short else (1.0,)))
+    axis.set_minor_formatter(NullFormatter())
+    if low > 1e-3 and high < 1e5:
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
 def _quarter_turns(axis: Axes) -> MultipleLocator:
@@ -135,19 +157,21 @@ def spectrum(
     with styled():
         figure, (axis,) = panels(1)
         rms = response.rms()[output]
+        figure.suptitle(f"{output} on irregular track", x=0.01, ha="left", weight="bold", size=10)
         place = f"{response.quality}, {response.speed * 3.6:.0f} km/h"
-        axis.set_title(f"{output} on irregular track: {place}; r.m.s. {rms:.3g} {unit}", pad=10, size=9)
+        axis.set_title(f"{place}: r.m.s. {rms:.3g} {unit} over these frequencies", weight="normal", size=9)
         f, total = response.frequencies, response.psd[:, column]
         if simulated is not None:
             axis.loglog(*simulated, color=PALE, lw=1.0, label="simulated", zorder=1)
-        axis.loglog(f, total, color=INK, lw=1.9, label="all", zorder=4)
+        axis.loglog(f, total, color=INK, lw=1.9, label="all", zorder=3)
         for kind, share in response.shares.items():
             if len(response.shares) > 1 and share[:, column].max() > 10.0**-DECADES * total.max():
                 color, line = KIND_LOOKS[kind]
-                axis.loglog(f, share[:, column], color=color, ls=line, lw=1.3, label=kind, zorder=3)
+                axis.loglog(f, share[:, column], color=color, ls=line, lw=1.3, label=kind, zorder=4)
         axis.set_xlim(f[0], f[-1])
         axis.set_ylim(total.max() * 10.0**-DECADES, 3.0 * total.max())
         axis.set_xlabel("frequency  [Hz]")
+        _plain_ticks(axis.xaxis, f[0], f[-1])
         axis.set_ylabel(f"density  [({unit})²/Hz]")
         axis.legend(loc="best", handlelength=3.0)
         return figure
