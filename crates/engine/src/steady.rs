@@ -17,6 +17,9 @@ pub const DIRECTIONS: usize = 32;
 const MAX_ITERATIONS: usize = 60;
 /// A step that is this short and no longer gets shorter is rounding.
 const STALLED: f64 = 1e-7;
+/// Parts of the speed by which a detour goes, and in how many steps it comes back.
+const DETOURS: [f64; 4] = [0.035, -0.035, 0.07, -0.07];
+const DETOUR_STEPS: usize = 14;
 /// First and last step of the relaxation \[s\], and how many there may be.
 const RELAXATION: [f64; 2] = [5e-3, 100.0];
 const MAX_RELAXATIONS: usize = 300;
@@ -50,6 +53,8 @@ struct Problem<'a> {
     wiring: Option<&'a Wiring>,
     /// Share of the curvature and cant of a uniform track.
     share: f64,
+    /// Share of the held speed.
+    speed_share: f64,
     free: Vec<usize>,
 }
 
@@ -86,7 +91,7 @@ pub fn steady(m: &Model, wiring: Option<&Wiring>, start: Option<&Steady>) -> Res
             Err(_) if 0.5 * step < ENTRY[1] => {
                 // the branch turns back: let the motion find the next one
                 problem.share = 1.0;
-                return problem.newton(problem.relaxed(state)?);
+                return problem.settled(state.clone()).or_else(|_| problem.detour(state));
             }
             Err(_) => {
                 problem.share = before;
@@ -104,7 +109,29 @@ impl<'a> Problem<'a> {
         // the place along the track is free; without a speed hold the speed of the reference body is given instead
         let given = |i: &usize| *i == s_ref || (m.hold.is_none() && *i == v_ref);
         let free = (0..m.state_count()).filter(|i| !given(i)).collect();
-        Self { m, wiring, share: 1.0, free }
+        Self { m, wiring, share: 1.0, speed_share: 1.0, free }
+    }
+
+    /// By way of the motion.
+    fn settled(&self, state: Steady) -> Result<Steady, EngineError> {
+        self.newton(self.relaxed(state)?)
+    }
+
+    /// By way of a neighbouring speed, from which this one is approached in steps.
+    fn detour(&mut self, state: Steady) -> Result<Steady, EngineError> {
+        let mut last = self.failed(0, (f64::INFINITY, 0));
+        for away in DETOURS {
+            let mut at = Ok(state.clone());
+            for left in (0..=DETOUR_STEPS).rev() {
+                self.speed_share = 1.0 + away * left as f64 / DETOUR_STEPS as f64;
+                at = at.and_then(|s| self.newton(s.clone()).or_else(|_| self.settled(s)));
+            }
+            match at {
+                Ok(found) => return Ok(found),
+                Err(error) => last = error,
+            }
+        }
+        Err(last)
     }
 
     fn guess(&self) -> Steady {
@@ -230,6 +257,10 @@ impl<'a> Problem<'a> {
         pass.x.iter_mut().zip(&at.x).for_each(|(to, &x)| *to = S::constant(x));
         pass.inputs.iter_mut().zip(&at.inputs).for_each(|(to, &u)| *to = S::constant(u));
         pass.integrals.iter_mut().zip(&at.integrals).for_each(|(to, &w)| *to = S::constant(w));
+        if m.hold.is_some() {
+            let speed = &mut pass.inputs[m.places.speed];
+            *speed = *speed * self.speed_share;
+        }
         if let Course::Uniform(track) = m.track {
             let [curvature, cant] = [0, 1].map(|i| m.places.track + i);
             pass.inputs[curvature] = pass.inputs[curvature] + (self.share - 1.0) * track.curvature;
