@@ -217,8 +217,9 @@ def test_sensitivities_of_the_coach_are_those_of_its_eigenvalues() -> None:
 
 
 def test_sensitivities_of_a_controller() -> None:
-    """The least damped mode, 55 Hz, is that of the transmissions: the notch filter moves it more than the axle's mass."""
-    table = eigenvalue_sensitivities(active(), ["vehicle.axle_bridge.mass", "control.notch_frequency"])
+    """The mode of the transmissions, 55 Hz: the notch filter of the torque loops moves it, the axle's mass hardly."""
+    paths = ["vehicle.axle_bridge.mass", "control.notch_frequency"]
+    table = eigenvalue_sensitivities(active(), paths, eigenvalues=[-25.0 + 345.0j])
     assert list(table["parameter"]) == ["control.notch_frequency", "vehicle.axle_bridge.mass"]
     assert (table["error"] < 1e-5).all()
     assert table["frequency"].iloc[0] == pytest.approx(54.9, abs=0.5)
