@@ -6,6 +6,7 @@ use crate::model::{Body, Model};
 use crate::motion::{self, Motion};
 use crate::rates::{Loads, Workspace};
 use crate::wheel_rail::WheelState;
+use klingel_physics::Scalar;
 use klingel_physics::math::Vec3;
 
 /// Name and unit of one channel.
@@ -65,9 +66,9 @@ pub fn list(m: &Model) -> Vec<Channel> {
 }
 
 /// Writes the channels at one time; `w` must come from `rates` at the same `x` and `inputs`.
-pub fn fill(m: &Model, x: &[f64], inputs: &[f64], w: &Workspace<f64>, row: &mut [f64]) {
+pub fn fill<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &Workspace<S>, row: &mut [S]) {
     let mut at = 0;
-    let mut put = |values: &[f64]| {
+    let mut put = |values: &[S]| {
         row[at..at + values.len()].copy_from_slice(values);
         at += values.len();
     };
@@ -88,16 +89,16 @@ pub fn fill(m: &Model, x: &[f64], inputs: &[f64], w: &Workspace<f64>, row: &mut 
     }
 }
 
-fn body_row(
+fn body_row<S: Scalar>(
     m: &Model,
     body: &Body,
-    motion: &Motion<f64>,
-    loads: &Loads<f64>,
-    felt_T: Vec3<f64>,
-    x: &[f64],
-) -> [f64; BODY.len()] {
+    motion: &Motion<S>,
+    loads: &Loads<S>,
+    felt_T: Vec3<S>,
+    x: &[S],
+) -> [S; BODY.len()] {
     let q = motion::read(body, x);
-    let felt_B = motion.R_TB.back(felt_T) * (1.0 / body.mass);
+    let felt_B = motion.R_TB.back(felt_T) * S::constant(1.0 / body.mass);
     let moment_B = motion.R_WB.back(loads.moment_W);
     [
         q.s,
@@ -112,12 +113,12 @@ fn body_row(
         motion.w_B.x(),
         motion.w_B.z(),
         motion.track.curvature,
-        m.cant_base * motion.track.cant_angle.sin(),
+        motion.track.cant_angle.sin() * m.cant_base,
         moment_B.z(),
     ]
 }
 
-fn wheel_row(state: &WheelState<f64>, spin_speed: f64) -> [f64; WHEEL.len()] {
+fn wheel_row<S: Scalar>(state: &WheelState<S>, spin_speed: S) -> [S; WHEEL.len()] {
     let [x, y, z] = state.force_T.0;
     let [tread, root, flange] = state.normal;
     let (angle, steep, slender) = (state.contact_angle, state.steep_force, state.slender_force);

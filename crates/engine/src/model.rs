@@ -1,17 +1,19 @@
 //! The compiled model: constant arrays, one `Vec` per element kind, every name resolved to an index.
 //! Made by `compile`; read by `rates`; never changed by a run.
 
+use crate::inputs::Places;
 use crate::spec::RunSpec;
 use klingel_physics::contact::creep::FallingFriction;
 use klingel_physics::contact::{ContactTable, CreepForce};
 use klingel_physics::drives::{self, Actuator};
 use klingel_physics::elements::{Bushing, Maxwell, Stop};
-use klingel_physics::track::Alignment;
+use klingel_physics::Scalar;
+use klingel_physics::track::{Alignment, TrackFrame, UniformTrack};
 use std::sync::Arc;
 
 #[derive(Clone, Debug)]
 pub struct Model {
-    pub track: Alignment,
+    pub track: Course,
     pub cant_base: f64,
     /// \[m/s2\]
     pub gravity: f64,
@@ -26,7 +28,7 @@ pub struct Model {
     pub joint_pairs: Vec<(usize, Option<usize>)>,
     pub bushings: Vec<(usize, Bushing)>,
     pub maxwells: Vec<MaxwellIn>,
-    pub stops: Vec<(usize, usize, Stop)>,
+    pub stops: Vec<StopIn>,
     pub actuators: Vec<ActuatorIn>,
     pub wheels: Vec<Wheel>,
     pub drives: Vec<Drive>,
@@ -41,9 +43,34 @@ pub struct Model {
     pub poles: Vec<f64>,
     /// Dotted name of each state, for messages and linear models.
     pub state_names: Vec<String>,
-    /// Held inputs before any controller acts: voltages of the drives, then force commands of the actuators.
+    pub state_units: Vec<&'static str>,
+    /// Inputs before any controller acts, in the order of `inputs::list`.
     pub inputs: Vec<f64>,
+    pub places: Places,
     pub run: RunSpec,
+}
+
+/// Where the vehicle runs.
+#[derive(Clone, Debug)]
+pub enum Course {
+    Laid(Alignment),
+    Uniform(UniformTrack<f64>),
+}
+
+impl Course {
+    /// The frame at `s`; on a uniform track seen from the place at `reference`, with the changes of curvature and cant.
+    #[inline]
+    pub fn at<S: Scalar>(&self, s: S, reference: S, [curvature, cant]: [S; 2]) -> TrackFrame<S> {
+        match self {
+            Self::Laid(alignment) => alignment.at(s),
+            Self::Uniform(track) => UniformTrack {
+                curvature: curvature + track.curvature,
+                cant: cant + track.cant,
+                cant_base: track.cant_base,
+            }
+            .at(s - reference),
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -89,6 +116,14 @@ pub struct MaxwellIn {
     pub axis: usize,
     pub law: Maxwell,
     pub state: usize,
+}
+
+#[derive(Clone, Debug)]
+pub struct StopIn {
+    pub name: String,
+    pub joint: usize,
+    pub axis: usize,
+    pub law: Stop,
 }
 
 #[derive(Clone, Debug)]
@@ -140,13 +175,15 @@ pub struct Hold {
     pub proportional: f64,
     /// \[N/m\]
     pub integral: f64,
+    /// Of the held speed \[m/s2\].
+    pub acceleration: f64,
     pub state: usize,
 }
 
 impl Drive {
     /// What the inverter puts out \[V\]: the commanded voltage within +-VaMax.
     #[inline]
-    pub fn armature_voltage(&self, inputs: &[f64]) -> f64 {
+    pub fn armature_voltage<S: Scalar>(&self, inputs: &[S]) -> S {
         inputs[self.input].clamp(-self.voltage_max, self.voltage_max)
     }
 }
@@ -154,5 +191,10 @@ impl Drive {
 impl Model {
     pub fn state_count(&self) -> usize {
         self.state_names.len()
+    }
+
+    /// The body whose arc length and speed count for the vehicle's: that of the speed hold, else the first.
+    pub fn reference(&self) -> usize {
+        self.hold.as_ref().map_or(0, |h| h.body)
     }
 }

@@ -5,7 +5,7 @@
 use crate::model::Body;
 use klingel_physics::Scalar;
 use klingel_physics::math::{Rotation, Vec3};
-use klingel_physics::track::{Alignment, TrackFrame};
+use klingel_physics::track::TrackFrame;
 
 /// Where a body is and how it moves.
 #[derive(Clone, Copy, Debug, Default)]
@@ -76,9 +76,9 @@ pub fn read<S: Scalar>(body: &Body, x: &[S]) -> BodyStates<S> {
 /// v = s' (e_x + O x p) + (0, y', z') gives s' = vx / (1 + Oy z - Oz y), y' = vy + s' Ox z, z' = vz - s' Ox y:
 /// only first derivatives of the track enter, so the kink of a cant ramp does not touch v.
 /// The relative angular velocity in F is (roll', pitch' + yaw' sin roll, yaw' cos roll).
-pub fn motion<S: Scalar>(track: &Alignment, body: &Body, x: &[S], dx: &mut [S]) -> Motion<S> {
+pub fn motion<S: Scalar>(track: impl Fn(S) -> TrackFrame<S>, body: &Body, x: &[S], dx: &mut [S]) -> Motion<S> {
     let q = read(body, x);
-    let frame = track.at(q.s);
+    let frame = track(q.s);
     let turn = frame.turn();
     let arc_rate = q.v.x() / (turn.y() * q.z - turn.z() * q.y + 1.0);
     let w_track_T = turn * arc_rate;

@@ -71,18 +71,21 @@ impl<S: Scalar> Workspace<S> {
     }
 }
 
-/// Rates `dx` of the states `x` under the held `inputs` (drive voltages \[V\], then actuator force commands \[N\]).
-pub fn rates<S: Scalar>(m: &Model, x: &[S], inputs: &[f64], w: &mut Workspace<S>, dx: &mut [S]) -> Result<(), Fault> {
+/// Rates `dx` of the states `x` under the held `inputs`, which `inputs::list` names.
+pub fn rates<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>, dx: &mut [S]) -> Result<(), Fault> {
     w.clear();
+    let (reference, track) = (x[m.bodies[m.reference()].state], m.places.track);
     for (body, state) in m.bodies.iter().zip(&mut w.motions) {
-        *state = motion(&m.track, body, x, dx);
+        let frame = |s: S| m.track.at(s, reference, [inputs[track], inputs[track + 1]]);
+        *state = motion(frame, body, x, dx);
     }
-    wheels(m, x, w)?;
+    wheels(m, x, inputs, w)?;
     suspension::joints(m, w);
     suspension::elements(m, x, inputs, w, dx);
     suspension::apply(m, w);
     traction::motors(m, x, inputs, w, dx);
-    traction::along_track(m, x, w, dx);
+    traction::along_track(m, x, inputs, w, dx);
+    traction::wind(m, inputs, w);
     newton_euler(m, w, x, dx);
     Ok(())
 }

@@ -6,10 +6,12 @@ use crate::compile::compile;
 use crate::control::Controller;
 use crate::equilibrium::{design_state, equilibrium};
 use crate::error::{EngineError, Fault};
+use crate::excitation::Excitation;
 use crate::integrate::Etdrk4;
 use crate::model::Model;
 use crate::rates::{Workspace, rates};
 use crate::spec::Spec;
+use crate::wiring::Wiring;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// How far a run is, and the wish to end it; shared with whoever watches.
@@ -83,7 +85,7 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
     let start = cpu_time::ThreadTime::now();
     let mut x = if m.run.equilibrium { equilibrium(m)? } else { design_state(m) };
     let channels = channels::list(m);
-    let mut wired = controller.map(|c| Wired::new(m, c, &channels)).transpose()?;
+    let mut wired = controller.map(|c| Wired::new(m, c)).transpose()?;
     let probes = wired.as_ref().map_or(0, |w| w.controller.probe_channels().len());
     let width = channels.len() + probes;
 
@@ -103,7 +105,8 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
         series.channels.extend(w.controller.probe_channels().iter().cloned());
     }
 
-    let mut inputs = m.inputs.clone();
+    let excitation = Excitation::new(m)?;
+    let (mut held, mut inputs) = (m.inputs.clone(), m.inputs.clone());
     let mut w = Workspace::<f64>::new(m);
     let mut first = vec![0.0; x.len()];
     let mut row = vec![0.0; width];
@@ -113,8 +116,9 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
         let time = k as f64 * step;
         let sampled = wired.as_ref().is_some_and(|c| k % c.every == 0);
         if let (Some(c), true) = (&wired, sampled && k > 0) {
-            c.drive(&mut inputs);
+            c.drive(&mut held);
         }
+        excitation.apply(k, &held, &mut inputs);
         let evaluated = rates(m, &x, &inputs, &mut w, &mut first).and_then(|()| {
             if k % record_every == 0 || sampled {
                 channels::fill(m, &x, &inputs, &w, &mut row);
@@ -157,29 +161,8 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
 }
 
 impl Wired {
-    fn new(m: &Model, controller: Controller, channels: &[channels::Channel]) -> Result<Self, EngineError> {
-        let find = |names: &mut dyn Iterator<Item = &str>, what: &'static str, name: &str| {
-            let names: Vec<&str> = names.collect();
-            names.iter().position(|n| *n == name).ok_or_else(|| EngineError::Unknown {
-                place: "control".into(),
-                what,
-                name: name.into(),
-                known: format!("{} of them, such as {}", names.len(), names.first().unwrap_or(&"none")),
-            })
-        };
-        let measured = controller
-            .measurement_names()
-            .iter()
-            .map(|name| find(&mut channels.iter().map(|c| c.0.as_str()), "channel", name))
-            .collect::<Result<Vec<_>, _>>()?;
-        let targets: Vec<String> = (m.drives.iter().map(|d| format!("{}.armature_voltage", d.name)))
-            .chain(m.actuators.iter().map(|a| format!("{}.force", a.name)))
-            .collect();
-        let driven = controller
-            .command_targets()
-            .iter()
-            .map(|name| find(&mut targets.iter().map(String::as_str), "input", name))
-            .collect::<Result<Vec<_>, _>>()?;
+    fn new(m: &Model, controller: Controller) -> Result<Self, EngineError> {
+        let Wiring { measured, driven, .. } = Wiring::of(m, controller.diagram().clone())?;
         let every = (controller.sample_time() / m.run.step).round() as usize;
         Ok(Self { values: vec![0.0; measured.len()], controller, measured, driven, every })
     }

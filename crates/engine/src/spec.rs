@@ -46,11 +46,25 @@ pub struct Spec {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrackSpec {
+    #[serde(default)]
     pub segments: Vec<SegmentSpec>,
+    /// Endless instead of the segments.
+    #[serde(default)]
+    pub uniform: Option<UniformSpec>,
     /// Arc length of the vehicle's reference point (x = 0) at the start \[m\].
     pub start: f64,
     /// Lateral distance over which cant is measured \[m\]: 1.5.
     pub cant_base: f64,
+}
+
+/// The same curvature and cant everywhere.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UniformSpec {
+    /// \[1/m\], positive in a right-hand curve.
+    pub curvature: f64,
+    /// \[m\], positive where the left rail is higher.
+    pub cant: f64,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -358,6 +372,9 @@ pub struct HoldSpec {
     pub proportional: f64,
     /// \[N/m\]
     pub integral: f64,
+    /// Of the held speed from the start on \[m/s2\].
+    #[serde(default)]
+    pub acceleration: f64,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -374,6 +391,20 @@ pub struct RunSpec {
     /// Extra velocity of a body at the start: lateral \[m/s\] and yaw rate \[rad/s\], for stability runs and tests.
     #[serde(default)]
     pub kicks: Vec<KickSpec>,
+    /// What is added to inputs of the model in the course of the run.
+    #[serde(default)]
+    pub excitations: Vec<ExcitationSpec>,
+}
+
+/// Values that are added to an input, each held for an interval; nothing after the last.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExcitationSpec {
+    /// Dotted: `bogie1.wheelset1.left.rail_z`, `wind.y`.
+    pub input: String,
+    /// A multiple of the step \[s\].
+    pub interval: f64,
+    pub values: Vec<f64>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -51,7 +51,7 @@ pub fn joints<S: Scalar>(m: &Model, w: &mut Workspace<S>) {
 }
 
 /// Springs, dampers, stops and actuators; rates of their inner states.
-pub fn elements<S: Scalar>(m: &Model, x: &[S], inputs: &[f64], w: &mut Workspace<S>, dx: &mut [S]) {
+pub fn elements<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>, dx: &mut [S]) {
     for (joint, law) in &m.bushings {
         let j = &mut w.joints[*joint];
         j.force += law.force(j.u, j.rate);
@@ -64,16 +64,16 @@ pub fn elements<S: Scalar>(m: &Model, x: &[S], inputs: &[f64], w: &mut Workspace
         j.force.0[e.axis] -= x[e.state];
         dx[e.state] = e.law.rate(x[e.state], j.rate.0[e.axis]);
     }
-    for (joint, axis, law) in &m.stops {
-        let j = &mut w.joints[*joint];
-        let resisting = law.force(j.u.0[*axis]);
-        j.force.0[*axis] -= resisting;
+    for e in &m.stops {
+        let j = &mut w.joints[e.joint];
+        let resisting = e.law.force(j.u.0[e.axis]);
+        j.force.0[e.axis] -= resisting;
     }
     for e in &m.actuators {
         let j = &mut w.joints[e.joint];
         let state = ActuatorState { force: x[e.state], force_rate: x[e.state + 1] };
         j.force.0[0] += e.law.force(&state, j.u.x());
-        let rates = e.law.rates(&state, S::constant(inputs[e.input]));
+        let rates = e.law.rates(&state, inputs[e.input]);
         (dx[e.state], dx[e.state + 1]) = (rates.force, rates.force_rate);
     }
 }

@@ -3,6 +3,7 @@
 //! Rails are rigid and lie still in the track frame, so absolute wheel velocities are slip velocities.
 
 use crate::error::Fault;
+use crate::inputs::RAIL;
 use crate::model::{Model, Wheel};
 use crate::motion::Motion;
 use crate::rates::Workspace;
@@ -32,16 +33,17 @@ pub struct WheelState<S> {
     /// Sum of |Mz phi| \[N\].
     pub spin_work: S,
     /// Steepest patch above 1 kN \[rad\], and load of the most loaded patch over 15 degrees \[N\].
-    pub contact_angle: f64,
-    pub steep_force: f64,
+    pub contact_angle: S,
+    pub steep_force: S,
     /// Load of the patches so slender that the creep table does not hold their a/b \[N\].
-    pub slender_force: f64,
+    pub slender_force: S,
 }
 
-pub fn wheels<S: Scalar>(m: &Model, x: &[S], w: &mut Workspace<S>) -> Result<(), Fault> {
-    for (wheel, state) in m.wheels.iter().zip(&mut w.wheels) {
+pub fn wheels<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>) -> Result<(), Fault> {
+    let rails = inputs[m.places.rails..].chunks_exact(RAIL.len());
+    for ((wheel, state), rail) in m.wheels.iter().zip(&mut w.wheels).zip(rails) {
         let motion = &w.motions[wheel.body];
-        let (forces, moment) = wheel_on_rail(m, wheel, motion, x[m.rotors[wheel.rotor].state])?;
+        let (forces, moment) = wheel_on_rail(m, wheel, motion, x[m.rotors[wheel.rotor].state], rail)?;
         let loads = &mut w.loads[wheel.body];
         loads.force_T += forces.force_T;
         loads.moment_T += moment;
@@ -51,12 +53,15 @@ pub fn wheels<S: Scalar>(m: &Model, x: &[S], w: &mut Workspace<S>) -> Result<(),
     Ok(())
 }
 
-/// Forces of one wheel, and their moment about the body's centre of mass in T.
+/// Forces of one wheel, and their moment about the body's centre of mass in T. `rail`: how it lies off its place, y and z,
+/// and how fast that changes at the wheel. Forces stay in the cross-section: the slope of an irregularity along the rail
+/// turns neither the normal force nor the slip, effects of second order for creepages and of N dz/ds along the track.
 fn wheel_on_rail<S: Scalar>(
     m: &Model,
     wheel: &Wheel,
     body: &Motion<S>,
     spin: S,
+    rail: &[S],
 ) -> Result<(WheelState<S>, Vec3<S>), Fault> {
     let sign = wheel.sign;
     // point on the axle line in the tape-circle plane: position and velocity in T
@@ -66,8 +71,9 @@ fn wheel_on_rail<S: Scalar>(
     let v_T = body.v_T + body.R_TB.apply(body.w_B.cross(centre_B));
 
     // coordinates of the contact table, which is made for a right wheel
-    let shift = p_T.y() * sign - body.sin_roll * (sign * wheel.radius) - wheel.half_tape_distance;
-    let depth = p_T.z() + body.cos_roll * wheel.radius;
+    let shift = (p_T.y() - rail[0]) * sign - body.sin_roll * (sign * wheel.radius) - wheel.half_tape_distance;
+    let depth = p_T.z() - rail[1] + body.cos_roll * wheel.radius;
+    let rail_rate_T = Vec3::new(S::zero(), rail[2], rail[3]);
     let roll = body.sin_roll * sign;
     let yaw = body.yaw * sign;
     let patches =
@@ -89,7 +95,7 @@ fn wheel_on_rail<S: Scalar>(
             let into_rail = Vec3::new(S::zero(), sin * sign, cos);
             let w_T = body.R_TF.apply(w_F);
 
-            let damping = (slip_T.dot(into_rail) * m.contact_dissipation + 1.0).positive();
+            let damping = ((slip_T - rail_rate_T).dot(into_rail) * m.contact_dissipation + 1.0).positive();
             let normal = patch.normal_force * damping;
             let mean_speed = (v_T.x() + spin * patch.radius) * 0.5;
             let v_ref = (mean_speed.square() + CREEP_REFERENCE_FLOOR * CREEP_REFERENCE_FLOOR).sqrt();
@@ -111,20 +117,20 @@ fn wheel_on_rail<S: Scalar>(
             state.normal[zone] = normal;
             state.t_gamma += (fx * xi).abs() + (fy * eta).abs();
             state.spin_work += (mz * phi).abs();
-            report_angle(&mut state, patch.angle.value(), normal.value());
+            report_angle(&mut state, patch.angle, normal);
             if !CreepTable::holds(patch.a.value() / patch.b.value()) {
-                state.slender_force += normal.value();
+                state.slender_force += normal;
             }
         }
     }
     Ok((state, moment_T))
 }
 
-fn report_angle<S>(state: &mut WheelState<S>, angle: f64, load: f64) {
-    if load > REPORTED_LOAD {
+fn report_angle<S: Scalar>(state: &mut WheelState<S>, angle: S, load: S) {
+    if load.value() > REPORTED_LOAD {
         state.contact_angle = state.contact_angle.max(angle.abs());
     }
-    if angle.abs() > STEEP {
+    if angle.value().abs() > STEEP {
         state.steep_force = state.steep_force.max(load);
     }
 }

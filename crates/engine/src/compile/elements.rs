@@ -3,7 +3,7 @@
 
 use super::{Compiler, positive, value};
 use crate::error::EngineError;
-use crate::model::{ActuatorIn, Drive, Hold, MaxwellIn};
+use crate::model::{ActuatorIn, Drive, Hold, MaxwellIn, StopIn};
 use klingel_physics::drives::{self, Actuator};
 use klingel_physics::elements::{BlowOff, Bushing, Maxwell, Stop};
 
@@ -45,18 +45,19 @@ impl Compiler<'_> {
                 },
             };
             let joint = self.joint(&e.name, &e.joint)?;
-            let state = self.states.add(format!("{}.force", e.name), law.pole());
+            let state = self.states.add(format!("{}.force", e.name), "N", law.pole());
             maxwells.push(MaxwellIn { name: e.name.clone(), joint, axis: e.axis.index(), law, state });
         }
         Ok(maxwells)
     }
 
-    pub(super) fn stops(&mut self) -> Result<Vec<(usize, usize, Stop)>, EngineError> {
+    pub(super) fn stops(&mut self) -> Result<Vec<StopIn>, EngineError> {
         let mut stops = Vec::new();
         for s in &self.spec.stops {
             let law = Stop::new(&s.deflection, &s.force)
                 .map_err(|source| EngineError::Stop { name: s.name.clone(), source })?;
-            stops.push((self.joint(&s.name, &s.joint)?, s.axis.index(), law));
+            let joint = self.joint(&s.name, &s.joint)?;
+            stops.push(StopIn { name: s.name.clone(), joint, axis: s.axis.index(), law });
         }
         Ok(stops)
     }
@@ -73,8 +74,8 @@ impl Compiler<'_> {
                 stop_stiffness: positive(&a.name, "stop_stiffness", a.stop_stiffness)?,
             };
             let joint = self.joint(&a.name, &a.joint)?;
-            let state = self.states.add(format!("{}.force", a.name), 0.0);
-            self.states.add(format!("{}.force_rate", a.name), 0.0);
+            let state = self.states.add(format!("{}.force", a.name), "N", 0.0);
+            self.states.add(format!("{}.force_rate", a.name), "N/s", 0.0);
             inputs.push(0.0);
             actuators.push(ActuatorIn { name: a.name.clone(), joint, law, state, input: inputs.len() - 1 });
         }
@@ -100,9 +101,9 @@ impl Compiler<'_> {
                 transmission_stiffness: positive(&d.name, "transmission_stiffness", d.transmission_stiffness)?,
                 transmission_damping: d.transmission_damping,
             };
-            let state = self.states.add(format!("{}.armature_current", d.name), 0.0);
-            self.states.add(format!("{}.motor_speed", d.name), 0.0);
-            self.states.add(format!("{}.shaft_twist", d.name), 0.0);
+            let state = self.states.add(format!("{}.armature_current", d.name), "A", 0.0);
+            self.states.add(format!("{}.motor_speed", d.name), "rad/s", 0.0);
+            self.states.add(format!("{}.shaft_twist", d.name), "rad", 0.0);
             drives.push(Drive {
                 name: d.name.clone(),
                 body,
@@ -120,11 +121,12 @@ impl Compiler<'_> {
     pub(super) fn hold(&mut self) -> Result<Option<Hold>, EngineError> {
         let Some(h) = &self.spec.hold else { return Ok(None) };
         let body = self.body("hold", &h.body)?;
-        let state = self.states.add("hold.integral".into(), 0.0);
+        let state = self.states.add("hold.integral".into(), "N", 0.0);
         Ok(Some(Hold {
             body,
             proportional: positive("hold", "proportional", h.proportional)?,
             integral: positive("hold", "integral", h.integral)?,
+            acceleration: h.acceleration,
             state,
         }))
     }

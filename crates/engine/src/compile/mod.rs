@@ -5,10 +5,11 @@ mod elements;
 mod wheels;
 
 use crate::error::EngineError;
-use crate::model::{Body, Joint, Model, Rotor};
-use crate::spec::{BodySpec, JointSpec, RunSpec, Spec};
+use crate::inputs::Places;
+use crate::model::{Body, Course, Joint, Model, Rotor};
+use crate::spec::{BodySpec, JointSpec, RunSpec, SegmentSpec, Spec, TrackSpec, UniformSpec};
 use klingel_physics::contact::Material;
-use klingel_physics::track::{Alignment, Segment};
+use klingel_physics::track::{Alignment, Segment, UniformTrack};
 
 pub use wheels::{named_profile, pair_geometry, prepare};
 
@@ -17,13 +18,7 @@ pub use wheels::{named_profile, pair_geometry, prepare};
 /// # Errors
 /// Everything that `EngineError` lists before `Equilibrium`.
 pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
-    let segments: Vec<Segment> = spec
-        .track
-        .segments
-        .iter()
-        .map(|s| Segment { length: s.length, curvature: s.curvature, cant: s.cant })
-        .collect();
-    let track = Alignment::new(&segments, positive("track", "cant_base", spec.track.cant_base)?)?;
+    let track = course(&spec.track)?;
     check_run(spec, &track)?;
 
     let mut states = States::default();
@@ -43,6 +38,11 @@ pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
     let wheels = c.wheels(&material)?;
     let (creep, falling_friction) = wheels::creep_law(&spec.creep, &material)?;
     let Compiler { bodies, rotors, joints, states, .. } = c;
+    let places = Places::new(inputs.len(), wheels.len(), hold.is_some());
+    inputs.resize(places.count, 0.0);
+    if hold.is_some() {
+        inputs[places.speed] = spec.speed;
+    }
     let joint_pairs = mirror_partners(&joints);
     Ok(Model {
         track,
@@ -67,21 +67,40 @@ pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
         contact_dissipation: spec.creep.contact_dissipation,
         poles: states.poles,
         state_names: states.names,
+        state_units: states.units,
         inputs,
+        places,
         run: spec.run.clone(),
     })
+}
+
+fn course(track: &TrackSpec) -> Result<Course, EngineError> {
+    let cant_base = positive("track", "cant_base", track.cant_base)?;
+    if let Some(UniformSpec { curvature, cant }) = track.uniform {
+        if !track.segments.is_empty() {
+            return Err(value("track.segments", track.segments.len(), "leave them out on a uniform track"));
+        }
+        // the limits of a laid track hold as well
+        Alignment::new(&[Segment { length: 1.0, curvature: [curvature; 2], cant: [cant; 2] }], cant_base)?;
+        return Ok(Course::Uniform(UniformTrack { curvature, cant, cant_base }));
+    }
+    let segment = |s: &SegmentSpec| Segment { length: s.length, curvature: s.curvature, cant: s.cant };
+    let segments: Vec<Segment> = track.segments.iter().map(segment).collect();
+    Ok(Course::Laid(Alignment::new(&segments, cant_base)?))
 }
 
 /// Names and decay rates of the states, in order.
 #[derive(Default)]
 struct States {
     names: Vec<String>,
+    units: Vec<&'static str>,
     poles: Vec<f64>,
 }
 
 impl States {
-    fn add(&mut self, name: String, pole: f64) -> usize {
+    fn add(&mut self, name: String, unit: &'static str, pole: f64) -> usize {
         self.names.push(name);
+        self.units.push(unit);
         self.poles.push(pole);
         self.names.len() - 1
     }
@@ -95,7 +114,7 @@ fn positive(place: &str, key: &str, x: f64) -> Result<f64, EngineError> {
     if x > 0.0 && x.is_finite() { Ok(x) } else { Err(value(format!("{place}.{key}"), x, "give a positive number")) }
 }
 
-fn check_run(spec: &Spec, track: &Alignment) -> Result<(), EngineError> {
+fn check_run(spec: &Spec, track: &Course) -> Result<(), EngineError> {
     let RunSpec { duration, step, record_interval, .. } = spec.run;
     positive("run", "duration", duration)?;
     positive("run", "step", step)?;
@@ -107,9 +126,12 @@ fn check_run(spec: &Spec, track: &Alignment) -> Result<(), EngineError> {
     {
         return Err(value("control.sample_time", control.sample_time, "make it a multiple of the step"));
     }
+    let Course::Laid(track) = track else { return Ok(()) };
     let front = spec.bodies.iter().map(|b| b.position[0]).fold(f64::MIN, f64::max);
     let rear = spec.bodies.iter().map(|b| b.position[0]).fold(f64::MAX, f64::min);
-    let end = spec.track.start + front + spec.speed * duration;
+    let acceleration = spec.hold.as_ref().map_or(0.0, |h| h.acceleration);
+    let way = spec.speed * duration + 0.5 * acceleration * duration * duration;
+    let end = spec.track.start + front + way;
     if spec.track.start + rear < 0.0 || end > track.length() + 1e-6 * track.length() {
         return Err(value(
             "run.duration",
@@ -135,14 +157,16 @@ fn body(b: &BodySpec, states: &mut States) -> Result<Body, EngineError> {
             positive(&b.name, "inertia", *inertia)?;
         }
     }
-    let names: &[&str] = if b.pitches {
-        &["s", "y", "z", "roll", "pitch", "yaw", "vx", "vy", "vz", "wx", "wy", "wz"]
-    } else {
-        &["s", "y", "z", "roll", "yaw", "vx", "vy", "vz", "wx", "wz"]
-    };
+    let names = ["s", "y", "z", "roll", "pitch", "yaw", "vx", "vy", "vz", "wx", "wy", "wz"];
     let first = states.names.len();
-    for name in names {
-        states.add(format!("{}.{name}", b.name), 0.0);
+    for name in names.iter().filter(|name| b.pitches || !["pitch", "wy"].contains(name)) {
+        let unit = match name.as_bytes() {
+            [b'v', _] => "m/s",
+            [b'w', _] => "rad/s",
+            [_] => "m",
+            _ => "rad",
+        };
+        states.add(format!("{}.{name}", b.name), unit, 0.0);
     }
     Ok(Body {
         name: b.name.clone(),
@@ -207,7 +231,7 @@ impl<'a> Compiler<'a> {
         for (body, b) in self.spec.bodies.iter().enumerate() {
             for r in &b.rotors {
                 positive(&b.name, "rotors.inertia", r.inertia)?;
-                let state = self.states.add(format!("{}.{}.spin_speed", b.name, r.name), 0.0);
+                let state = self.states.add(format!("{}.{}.spin_speed", b.name, r.name), "rad/s", 0.0);
                 self.rotors.push(Rotor { name: r.name.clone(), body, inertia: r.inertia, state });
             }
         }

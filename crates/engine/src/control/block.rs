@@ -1,8 +1,9 @@
-//! The laws of the blocks with their memory: what happens to one signal within one sample.
-//! Nothing allocates in `step`; `reset` puts every memory where a constant input would leave it.
+//! The laws of the blocks: what happens to one signal within one sample, for numbers and for dual numbers.
+//! Their memory is the caller's; `reset` puts it where a constant input would leave it. Nothing allocates.
 
 use super::filter::{Sections, StateSpace};
 use super::lookup::{Lookup, Outside};
+use klingel_physics::Scalar;
 
 /// A number or the slot of the signal that carries it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,15 +14,16 @@ pub enum Operand {
 
 impl Operand {
     #[inline]
-    fn value(self, signals: &[f64]) -> f64 {
+    fn value<S: Scalar>(self, signals: &[S]) -> S {
         match self {
-            Self::Number(x) => x,
+            Self::Number(x) => S::constant(x),
             Self::Slot(i) => signals[i],
         }
     }
 }
 
-/// PI with limits; `integral` carries the unit of the output, so a scheduled gain never makes it jump.
+/// PI with limits; its integral carries the unit of the output, so a scheduled gain never makes it jump.
+/// Memory: the integral, the error of the sample before.
 #[derive(Clone, Debug)]
 pub struct Pi {
     pub input: usize,
@@ -29,32 +31,39 @@ pub struct Pi {
     pub rate: Operand,
     pub lower: Option<Operand>,
     pub upper: Option<Operand>,
-    pub integral: f64,
-    pub last_error: f64,
 }
 
 impl Pi {
-    fn limit(&self, y: f64, signals: &[f64]) -> f64 {
+    fn limit<S: Scalar>(&self, y: S, signals: &[S]) -> S {
         let y = self.lower.map_or(y, |l| y.max(l.value(signals)));
         self.upper.map_or(y, |u| y.min(u.value(signals)))
     }
 
-    fn reset(&mut self, signals: &[f64]) -> f64 {
-        (self.integral, self.last_error) = (0.0, signals[self.input]);
-        self.limit(self.proportional.value(signals) * self.last_error, signals)
+    /// The output with this integral while the error stays.
+    fn settled<S: Scalar>(&self, memory: &mut [S], signals: &[S], integral: S) -> S {
+        (memory[0], memory[1]) = (integral, signals[self.input]);
+        self.limit(self.proportional.value(signals) * memory[1] + integral, signals)
     }
 
-    fn step(&mut self, signals: &[f64], ts: f64) -> f64 {
+    /// What is nil in a steady state: the error, or at a limit what the integral would carry the output beyond it.
+    pub fn unsettled<S: Scalar>(&self, integral: S, signals: &[S]) -> S {
+        let error = signals[self.input];
+        let wanted = self.proportional.value(signals) * error + integral;
+        let excess = wanted - self.limit(wanted, signals);
+        let pushing = S::zero().lt(excess * self.rate.value(signals) * error);
+        S::select(pushing, excess, error)
+    }
+
+    fn step<S: Scalar>(&self, memory: &mut [S], signals: &[S], ts: f64) -> S {
         let error = signals[self.input];
         let direct = self.proportional.value(signals) * error;
-        let growth = self.rate.value(signals) * 0.5 * ts * (error + self.last_error);
-        self.last_error = error;
-        let wanted = direct + self.integral + growth;
+        let growth = self.rate.value(signals) * (error + memory[1]) * (0.5 * ts);
+        memory[1] = error;
+        let wanted = direct + memory[0] + growth;
         let given = self.limit(wanted, signals);
         // Held while it would push the output further past the limit, free to come back.
-        if (wanted - given) * growth <= 0.0 {
-            self.integral += growth;
-        }
+        let free = ((wanted - given) * growth).le(S::zero());
+        memory[0] = S::select(free, memory[0] + growth, memory[0]);
         given
     }
 }
@@ -66,72 +75,115 @@ pub enum Block {
     Product { factors: Vec<usize> },
     Quotient { numerator: usize, denominator: usize, floor: f64 },
     Filter { input: usize, filter: Sections },
-    StateSpace { inputs: Vec<usize>, gathered: Vec<f64>, filter: StateSpace },
+    StateSpace { inputs: Vec<usize>, filter: StateSpace },
     Pi(Pi),
     Saturation { input: usize, lower: Operand, upper: Operand },
-    RateLimit { input: usize, rising: f64, falling: f64, last: f64 },
-    Delay { input: usize, ring: Vec<f64>, oldest: usize },
+    RateLimit { input: usize, rising: f64, falling: f64 },
+    Delay { input: usize, samples: usize },
     Lookup { input: usize, table: Lookup },
 }
 
 impl Block {
-    /// Goes to the steady state for constant inputs (an integral goes to zero) and returns the output there.
-    pub fn reset(&mut self, signals: &[f64], ts: f64) -> Result<f64, Outside> {
+    /// Numbers it remembers from sample to sample.
+    pub fn states(&self) -> usize {
+        match self {
+            Self::Filter { filter, .. } => filter.states(),
+            Self::StateSpace { filter, .. } => filter.states(),
+            Self::Pi(_) => 2,
+            Self::RateLimit { .. } => 1,
+            Self::Delay { samples, .. } => *samples,
+            _ => 0,
+        }
+    }
+
+    /// Numbers that a step writes over.
+    pub fn scratch(&self) -> usize {
+        if let Self::StateSpace { inputs, filter } = self { inputs.len() + filter.states() } else { 0 }
+    }
+
+    /// Goes to the steady state for constant inputs, a PI with the integral given, and returns the output there.
+    pub fn reset<S: Scalar>(
+        &self,
+        memory: &mut [S],
+        scratch: &mut [S],
+        signals: &[S],
+        integral: S,
+    ) -> Result<S, Outside> {
         Ok(match self {
-            Self::Filter { input, filter } => filter.reset(signals[*input]),
-            Self::StateSpace { inputs, gathered, filter } => {
-                gather(gathered, inputs, signals);
-                filter.reset(gathered)
+            Self::Filter { input, filter } => filter.reset(memory, signals[*input]),
+            Self::StateSpace { inputs, filter } => {
+                gather(scratch, inputs, signals);
+                filter.reset(memory, &scratch[..inputs.len()])
             }
-            Self::Pi(pi) => pi.reset(signals),
-            Self::RateLimit { input, last, .. } => {
-                *last = signals[*input];
-                *last
-            }
-            Self::Delay { input, ring, oldest } => {
-                ring.fill(signals[*input]);
-                *oldest = 0;
+            Self::Pi(pi) => pi.settled(memory, signals, integral),
+            Self::RateLimit { input, .. } | Self::Delay { input, .. } => {
+                memory.fill(signals[*input]);
                 signals[*input]
             }
-            _ => return self.step(signals, ts),
+            _ => return self.step(memory, scratch, signals, 0.0),
         })
     }
 
-    /// The output of this sample.
-    pub fn step(&mut self, signals: &[f64], ts: f64) -> Result<f64, Outside> {
+    /// The output of this sample, `ts` after the one before.
+    pub fn step<S: Scalar>(
+        &self,
+        memory: &mut [S],
+        scratch: &mut [S],
+        signals: &[S],
+        ts: f64,
+    ) -> Result<S, Outside> {
         Ok(match self {
             Self::Sum { terms, bias } => {
-                terms.iter().fold(*bias, |sum, &(slot, gain)| sum + gain.value(signals) * signals[slot])
+                terms.iter().fold(S::constant(*bias), |sum, &(slot, gain)| sum + gain.value(signals) * signals[slot])
             }
-            Self::Product { factors } => factors.iter().map(|&f| signals[f]).product(),
+            Self::Product { factors } => factors.iter().fold(S::one(), |product, &f| product * signals[f]),
             Self::Quotient { numerator, denominator, floor } => {
                 let d = signals[*denominator];
-                signals[*numerator] / d.abs().max(*floor).copysign(d)
+                let size = d.abs().max(S::constant(*floor));
+                signals[*numerator] / S::select(d.lt(S::zero()), -size, size)
             }
-            Self::Filter { input, filter } => filter.step(signals[*input]),
-            Self::StateSpace { inputs, gathered, filter } => {
-                gather(gathered, inputs, signals);
-                filter.step(gathered)
+            Self::Filter { input, filter } => filter.step(memory, signals[*input]),
+            Self::StateSpace { inputs, filter } => {
+                gather(scratch, inputs, signals);
+                let (given, next) = scratch.split_at_mut(inputs.len());
+                filter.step(memory, given, &mut next[..filter.states()])
             }
-            Self::Pi(pi) => pi.step(signals, ts),
+            Self::Pi(pi) => pi.step(memory, signals, ts),
             Self::Saturation { input, lower, upper } => {
                 signals[*input].max(lower.value(signals)).min(upper.value(signals))
             }
-            Self::RateLimit { input, rising, falling, last } => {
-                *last = signals[*input].max(*last - *falling * ts).min(*last + *rising * ts);
-                *last
+            Self::RateLimit { input, rising, falling } => {
+                memory[0] = signals[*input].max(memory[0] - falling * ts).min(memory[0] + rising * ts);
+                memory[0]
             }
-            Self::Delay { input, ring, oldest } => {
-                let y = core::mem::replace(&mut ring[*oldest], signals[*input]);
-                *oldest = (*oldest + 1) % ring.len();
+            Self::Delay { input, .. } => {
+                let y = memory[0];
+                memory.rotate_left(1);
+                memory[memory.len() - 1] = signals[*input];
                 y
             }
             Self::Lookup { input, table } => return table.value(signals[*input]),
         })
     }
+
+    /// Where a limit or corner is near: how far off, as a part of the law's range; none for a smooth law or one far off.
+    pub fn kink(&self, signals: &[f64]) -> Option<f64> {
+        let between = |x: f64, lower: f64, upper: f64| {
+            let range = (upper - lower).abs().max(f64::MIN_POSITIVE);
+            (x - lower).abs().min((upper - x).abs()) / range
+        };
+        match self {
+            Self::Quotient { denominator, floor, .. } => Some((signals[*denominator].abs() - floor).abs() / floor),
+            Self::Saturation { input, lower, upper } => {
+                Some(between(signals[*input], lower.value(signals), upper.value(signals)))
+            }
+            Self::Lookup { input, table } => table.kink(signals[*input]),
+            _ => None,
+        }
+    }
 }
 
-fn gather(into: &mut [f64], slots: &[usize], signals: &[f64]) {
+fn gather<S: Scalar>(into: &mut [S], slots: &[usize], signals: &[S]) {
     for (x, &slot) in into.iter_mut().zip(slots) {
         *x = signals[slot];
     }
@@ -143,36 +195,50 @@ mod tests {
 
     const TS: f64 = 1e-3;
 
-    fn pi(lower: f64, upper: f64) -> Block {
-        Block::Pi(Pi {
+    /// A block with its memory, as a controller keeps it.
+    struct Kept(Block, Vec<f64>);
+
+    impl Kept {
+        fn new(block: Block) -> Self {
+            let memory = vec![0.0; block.states()];
+            Self(block, memory)
+        }
+        fn reset(&mut self, signals: &[f64]) -> f64 {
+            self.0.reset(&mut self.1, &mut [], signals, 0.0).unwrap()
+        }
+        fn step(&mut self, signals: &[f64]) -> f64 {
+            self.0.step(&mut self.1, &mut [], signals, TS).unwrap()
+        }
+    }
+
+    fn pi(lower: f64, upper: f64) -> Kept {
+        Kept::new(Block::Pi(Pi {
             input: 0,
             proportional: Operand::Number(2.0),
             rate: Operand::Number(10.0),
             lower: Some(Operand::Number(lower)),
             upper: Some(Operand::Number(upper)),
-            integral: 0.0,
-            last_error: 0.0,
-        })
+        }))
     }
 
     #[test]
     fn sum_product_and_quotient() {
-        let mut sum = Block::Sum { terms: vec![(0, Operand::Number(2.0)), (1, Operand::Slot(2))], bias: 0.5 };
-        assert_eq!(sum.step(&[1.0, 3.0, -1.0], TS), Ok(-0.5));
-        assert_eq!(Block::Product { factors: vec![0, 1, 1] }.step(&[2.0, 3.0], TS), Ok(18.0));
-        let mut quotient = Block::Quotient { numerator: 0, denominator: 1, floor: 0.5 };
-        assert_eq!(quotient.step(&[3.0, -2.0], TS), Ok(-1.5));
-        assert_eq!(quotient.step(&[3.0, -0.1], TS), Ok(-6.0));
-        assert_eq!(quotient.step(&[3.0, 0.0], TS), Ok(6.0));
+        let mut sum = Kept::new(Block::Sum { terms: vec![(0, Operand::Number(2.0)), (1, Operand::Slot(2))], bias: 0.5 });
+        assert_eq!(sum.step(&[1.0, 3.0, -1.0]), -0.5);
+        assert_eq!(Kept::new(Block::Product { factors: vec![0, 1, 1] }).step(&[2.0, 3.0]), 18.0);
+        let mut quotient = Kept::new(Block::Quotient { numerator: 0, denominator: 1, floor: 0.5 });
+        assert_eq!(quotient.step(&[3.0, -2.0]), -1.5);
+        assert_eq!(quotient.step(&[3.0, -0.1]), -6.0);
+        assert_eq!(quotient.step(&[3.0, 0.0]), 6.0);
     }
 
     #[test]
     fn the_pi_integrates_exactly_and_starts_without_a_jolt() {
         let mut block = pi(-100.0, 100.0);
-        assert_eq!(block.reset(&[0.5], TS), Ok(1.0));
+        assert_eq!(block.reset(&[0.5]), 1.0);
         let mut y = 0.0;
         for _ in 0..1000 {
-            y = block.step(&[0.5], TS).unwrap();
+            y = block.step(&[0.5]);
         }
         assert!((y - (1.0 + 10.0 * 0.5 * 1.0)).abs() < 1e-9, "{y}");
     }
@@ -180,34 +246,43 @@ mod tests {
     #[test]
     fn the_integral_does_not_wind_up() {
         let mut block = pi(-3.0, 3.0);
-        block.reset(&[0.0], TS).unwrap();
+        block.reset(&[0.0]);
         for _ in 0..5000 {
-            assert!(block.step(&[1.0], TS).unwrap() <= 3.0);
+            assert!(block.step(&[1.0]) <= 3.0);
         }
         // Leaves the limit within the time the direct part needs, not after unloading 50 units.
         let mut samples = 0;
-        while block.step(&[-0.5], TS).unwrap() > 0.0 && samples < 1000 {
+        while block.step(&[-0.5]) > 0.0 && samples < 1000 {
             samples += 1;
         }
         assert_eq!(samples, 0);
     }
 
     #[test]
+    fn a_settled_pi_has_no_error_or_stands_at_its_limit() {
+        let Kept(Block::Pi(pi), _) = pi(-3.0, 3.0) else { unreachable!() };
+        assert_eq!(pi.unsettled(1.5, &[0.0]), 0.0);
+        assert_eq!(pi.unsettled(1.0, &[0.25]), 0.25);
+        assert_eq!(pi.unsettled(2.0, &[1.0]), 1.0);
+        assert_eq!(pi.unsettled(4.0, &[-0.25]), -0.25);
+    }
+
+    #[test]
     fn limits() {
-        let mut s = Block::Saturation { input: 0, lower: Operand::Number(-1.0), upper: Operand::Slot(1) };
-        assert_eq!(s.step(&[5.0, 2.0], TS), Ok(2.0));
-        assert_eq!(s.step(&[-5.0, 2.0], TS), Ok(-1.0));
-        let mut r = Block::RateLimit { input: 0, rising: 100.0, falling: 50.0, last: 0.0 };
-        assert_eq!(r.reset(&[1.0], TS), Ok(1.0));
-        assert!((r.step(&[9.0], TS).unwrap() - 1.1).abs() < 1e-12);
-        assert!((r.step(&[0.0], TS).unwrap() - 1.05).abs() < 1e-12);
+        let mut s = Kept::new(Block::Saturation { input: 0, lower: Operand::Number(-1.0), upper: Operand::Slot(1) });
+        assert_eq!(s.step(&[5.0, 2.0]), 2.0);
+        assert_eq!(s.step(&[-5.0, 2.0]), -1.0);
+        let mut r = Kept::new(Block::RateLimit { input: 0, rising: 100.0, falling: 50.0 });
+        assert_eq!(r.reset(&[1.0]), 1.0);
+        assert!((r.step(&[9.0]) - 1.1).abs() < 1e-12);
+        assert!((r.step(&[0.0]) - 1.05).abs() < 1e-12);
     }
 
     #[test]
     fn a_delay_of_n_samples_is_n_samples() {
-        let mut d = Block::Delay { input: 0, ring: vec![0.0; 3], oldest: 1 };
-        assert_eq!(d.reset(&[7.0], TS), Ok(7.0));
-        let out: Vec<f64> = (0..6).map(|k| d.step(&[f64::from(k)], TS).unwrap()).collect();
+        let mut d = Kept::new(Block::Delay { input: 0, samples: 3 });
+        assert_eq!(d.reset(&[7.0]), 7.0);
+        let out: Vec<f64> = (0..6).map(|k| d.step(&[f64::from(k)])).collect();
         assert_eq!(out, [7.0, 7.0, 7.0, 0.0, 1.0, 2.0]);
     }
 }

@@ -2,7 +2,7 @@
 //! A spec that compiles can only fail later by a signal that is not finite or leaves a table.
 
 use super::block::{Block, Operand, Pi};
-use super::controller::Controller;
+use super::diagram::Diagram;
 use super::error::ControlError;
 use super::filter::{Sections, StateSpace};
 use super::lookup::Lookup;
@@ -38,7 +38,7 @@ impl Names {
     }
 }
 
-pub(super) fn compile(spec: &ControlSpec) -> Result<Controller, ControlError> {
+pub(super) fn compile(spec: &ControlSpec) -> Result<Diagram, ControlError> {
     if !(spec.sample_time.is_finite() && spec.sample_time > 0.0) {
         return Err(ControlError::SampleTime { value: spec.sample_time });
     }
@@ -61,7 +61,7 @@ pub(super) fn compile(spec: &ControlSpec) -> Result<Controller, ControlError> {
     let commands = spec.commands.iter().map(|c| slot_of(&format!("command `{}`", c.target), &c.signal));
     let probes = spec.probes.iter().map(|p| slot_of(&format!("probe `{}`", p.channel), &p.signal));
     let (commands, probes) = (commands.collect::<Result<_, _>>()?, probes.collect::<Result<_, _>>()?);
-    Ok(Controller::new(spec, blocks, commands, probes))
+    Ok(Diagram::new(spec, blocks, commands, probes))
 }
 
 fn compile_block(spec: &BlockSpec, names: &Names) -> Result<Block, ControlError> {
@@ -89,7 +89,7 @@ fn compile_block(spec: &BlockSpec, names: &Names) -> Result<Block, ControlError>
         BlockSpec::StateSpace { inputs, a, b, c, d, .. } => {
             let inputs = names.slots(&place, inputs)?;
             let filter = compile_state_space(block, inputs.len(), a, b, c, d)?;
-            Block::StateSpace { gathered: vec![0.0; inputs.len()], inputs, filter }
+            Block::StateSpace { inputs, filter }
         }
         BlockSpec::Pi { input, proportional, integral, lower, upper, .. } => Block::Pi(Pi {
             input: slot(input)?,
@@ -97,8 +97,6 @@ fn compile_block(spec: &BlockSpec, names: &Names) -> Result<Block, ControlError>
             rate: operand(integral)?,
             lower: lower.as_ref().map(operand).transpose()?,
             upper: upper.as_ref().map(operand).transpose()?,
-            integral: 0.0,
-            last_error: 0.0,
         }),
         BlockSpec::Saturation { input, lower, upper, .. } => {
             Block::Saturation { input: slot(input)?, lower: operand(lower)?, upper: operand(upper)? }
@@ -107,13 +105,12 @@ fn compile_block(spec: &BlockSpec, names: &Names) -> Result<Block, ControlError>
             input: slot(input)?,
             rising: positive(block, "rising", *rising)?,
             falling: positive(block, "falling", *falling)?,
-            last: 0.0,
         },
         BlockSpec::Delay { input, samples, .. } => {
             if *samples == 0 {
                 return Err(bad(block, "samples", 0, "give at least 1, or leave the block out"));
             }
-            Block::Delay { input: slot(input)?, ring: vec![0.0; *samples], oldest: 0 }
+            Block::Delay { input: slot(input)?, samples: *samples }
         }
         BlockSpec::Lookup { input, x, y, interpolation, edge, .. } => {
             check_points(block, x, y)?;
@@ -163,10 +160,7 @@ fn compile_state_space(
         finite(block, "a coefficient", *x)?;
     }
     let filter = StateSpace::new(a, b, c.to_vec(), d.to_vec());
-    match filter.steady_state(&vec![1.0; inputs]) {
-        Some(_) => Ok(filter),
-        None => Err(bad(block, "a pole", "1", NO_POLE_AT_ONE)),
-    }
+    if filter.settles() { Ok(filter) } else { Err(bad(block, "a pole", "1", NO_POLE_AT_ONE)) }
 }
 
 fn check_points(block: &str, x: &[f64], y: &[f64]) -> Result<(), ControlError> {

@@ -1,24 +1,17 @@
-//! A compiled controller: one array of signals, filled from the front in the order of the blocks.
+//! A controller in a run: a block diagram with its memory.
 //! The engine calls `reset` once and `step` at every sample, and holds the commands in between.
 
-use super::block::Block;
 use super::compile;
+use super::diagram::{Diagram, Memory};
 use super::error::ControlError;
-use super::lookup::Outside;
 use super::spec::ControlSpec;
 
 /// A block diagram ready to run. Clone it to run the same controller for another vehicle.
 #[derive(Clone, Debug)]
 pub struct Controller {
-    sample_time: f64,
-    measurement_names: Vec<String>,
-    command_targets: Vec<String>,
-    probe_channels: Vec<(String, String)>,
-    blocks: Vec<(String, Block)>,
-    /// Measurements first, then one signal a block.
-    signals: Vec<f64>,
-    command_slots: Vec<usize>,
-    probe_slots: Vec<usize>,
+    diagram: Diagram,
+    memory: Memory<f64>,
+    integrals: Vec<f64>,
     commands: Vec<f64>,
     probes: Vec<f64>,
 }
@@ -29,47 +22,39 @@ impl Controller {
     /// # Errors
     /// Names that are unknown or taken twice, numbers out of their range, filters with a pole at z = 1.
     pub fn compile(spec: &ControlSpec) -> Result<Self, ControlError> {
-        compile::compile(spec)
+        let diagram = compile::compile(spec)?;
+        Ok(Self {
+            memory: diagram.memory(),
+            integrals: vec![0.0; diagram.integrators()],
+            commands: vec![0.0; diagram.command_targets.len()],
+            probes: vec![0.0; diagram.probe_channels.len()],
+            diagram,
+        })
     }
 
-    pub(super) fn new(
-        spec: &ControlSpec,
-        blocks: Vec<(String, Block)>,
-        command_slots: Vec<usize>,
-        probe_slots: Vec<usize>,
-    ) -> Self {
-        Self {
-            sample_time: spec.sample_time,
-            measurement_names: spec.measurements.clone(),
-            command_targets: spec.commands.iter().map(|c| c.target.clone()).collect(),
-            probe_channels: spec.probes.iter().map(|p| (p.channel.clone(), p.unit.clone())).collect(),
-            signals: vec![0.0; spec.measurements.len() + blocks.len()],
-            commands: vec![0.0; command_slots.len()],
-            probes: vec![0.0; probe_slots.len()],
-            blocks,
-            command_slots,
-            probe_slots,
-        }
+    /// What it was compiled to.
+    pub fn diagram(&self) -> &Diagram {
+        &self.diagram
     }
 
     /// Time between two calls of `step`, s.
     pub fn sample_time(&self) -> f64 {
-        self.sample_time
+        self.diagram.sample_time
     }
 
     /// The channels `reset` and `step` want, in order.
     pub fn measurement_names(&self) -> &[String] {
-        &self.measurement_names
+        &self.diagram.measurement_names
     }
 
     /// The inputs of the plant that `commands` drives, in order.
     pub fn command_targets(&self) -> &[String] {
-        &self.command_targets
+        &self.diagram.command_targets
     }
 
     /// Channel and unit of every probe, in order.
     pub fn probe_channels(&self) -> &[(String, String)] {
-        &self.probe_channels
+        &self.diagram.probe_channels
     }
 
     /// Goes to the state that constant measurements would lead to, integrals at zero: a run starts without a jolt.
@@ -77,7 +62,9 @@ impl Controller {
     /// # Errors
     /// As `step`.
     pub fn reset(&mut self, measurements: &[f64]) -> Result<(), ControlError> {
-        self.sweep(measurements, Block::reset)
+        self.diagram.settle(&mut self.memory, measurements, &self.integrals)?;
+        self.put_out();
+        Ok(())
     }
 
     /// One sample: measurements in (SI, in the order of `measurement_names`), commands and probes out.
@@ -85,7 +72,14 @@ impl Controller {
     /// # Errors
     /// A wrong number of measurements, a value that is not finite, an input outside its table.
     pub fn step(&mut self, measurements: &[f64]) -> Result<(), ControlError> {
-        self.sweep(measurements, Block::step)
+        self.diagram.step(&mut self.memory, measurements)?;
+        self.put_out();
+        Ok(())
+    }
+
+    fn put_out(&mut self) {
+        self.commands.iter_mut().zip(self.diagram.commands(&self.memory)).for_each(|(to, value)| *to = value);
+        self.probes.iter_mut().zip(self.diagram.probes(&self.memory)).for_each(|(to, value)| *to = value);
     }
 
     /// What the last `reset` or `step` commands, in the order of `command_targets`.
@@ -96,37 +90,6 @@ impl Controller {
     /// The probed signals of the last `reset` or `step`, in the order of `probe_channels`.
     pub fn probes(&self) -> &[f64] {
         &self.probes
-    }
-
-    fn sweep(
-        &mut self,
-        measurements: &[f64],
-        law: fn(&mut Block, &[f64], f64) -> Result<f64, Outside>,
-    ) -> Result<(), ControlError> {
-        let offset = self.measurement_names.len();
-        if measurements.len() != offset {
-            return Err(ControlError::Measurements { expected: offset, given: measurements.len() });
-        }
-        if let Some(i) = measurements.iter().position(|m| !m.is_finite()) {
-            return Err(ControlError::Measurement { name: self.measurement_names[i].clone(), value: measurements[i] });
-        }
-        self.signals[..offset].copy_from_slice(measurements);
-        for (i, (name, block)) in self.blocks.iter_mut().enumerate() {
-            let value = law(block, &self.signals, self.sample_time).map_err(|Outside { value, low, high }| {
-                ControlError::OutsideTable { block: name.clone(), value, low, high }
-            })?;
-            if !value.is_finite() {
-                return Err(ControlError::NotFinite { block: name.clone(), value });
-            }
-            self.signals[offset + i] = value;
-        }
-        for (command, &slot) in self.commands.iter_mut().zip(&self.command_slots) {
-            *command = self.signals[slot];
-        }
-        for (probe, &slot) in self.probes.iter_mut().zip(&self.probe_slots) {
-            *probe = self.signals[slot];
-        }
-        Ok(())
     }
 }
 

@@ -16,11 +16,13 @@
 mod block;
 mod compile;
 mod controller;
+mod diagram;
 mod error;
 mod filter;
 mod lookup;
 mod spec;
 
 pub use controller::Controller;
+pub use diagram::{BlockKink, Diagram, Memory};
 pub use error::ControlError;
 pub use spec::{BlockSpec, Command, ControlSpec, Edge, Interpolation, Parameter, Probe, Section, Term};

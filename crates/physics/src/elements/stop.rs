@@ -63,9 +63,29 @@ impl Stop {
     }
 }
 
+impl Stop {
+    /// How far a deflection \[m\] lies from the nearest corner of the curve, over the width of the interval behind it.
+    pub fn kink(&self, deflection: f64) -> Option<f64> {
+        let slope = |i: usize| (self.force[i + 1] - self.force[i]) / (self.deflection[i + 1] - self.deflection[i]);
+        let corner = |i: &usize| slope(*i) != slope(i - 1);
+        let off = |i: usize| {
+            let width = self.deflection[i] - self.deflection[i - 1];
+            (deflection.abs() - self.deflection[i]).abs() / width
+        };
+        (1..self.deflection.len() - 1).filter(corner).map(off).min_by(f64::total_cmp)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn corners_are_where_the_stiffness_jumps() {
+        let s = Stop::new(&[0.0, 0.02, 0.03, 0.04], &[0.0, 0.0, 10.0, 20.0]).unwrap();
+        assert!((s.kink(-0.021).unwrap() - 0.05).abs() < 1e-12);
+        assert_eq!(Stop::new(&[0.0, 1.0], &[0.0, 1.0]).unwrap().kink(0.3), None);
+    }
 
     #[test]
     fn bad_curves_are_named() {

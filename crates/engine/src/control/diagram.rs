@@ -1,0 +1,172 @@
+//! A compiled block diagram: one array of signals, filled from the front in the order of the blocks.
+//! It never changes; what it remembers is a `Memory` of numbers, or of dual numbers for steady states and linear models.
+
+use super::block::{Block, Pi};
+use super::error::ControlError;
+use super::lookup::Outside;
+use super::spec::ControlSpec;
+use klingel_physics::Scalar;
+
+#[derive(Clone, Debug)]
+pub struct Diagram {
+    pub sample_time: f64,
+    pub measurement_names: Vec<String>,
+    pub command_targets: Vec<String>,
+    /// Channel and unit of every probe.
+    pub probe_channels: Vec<(String, String)>,
+    blocks: Vec<Placed>,
+    command_slots: Vec<usize>,
+    probe_slots: Vec<usize>,
+}
+
+/// A block with its name and where its memory begins.
+#[derive(Clone, Debug)]
+struct Placed {
+    name: String,
+    block: Block,
+    memory: usize,
+}
+
+/// What a diagram remembers from sample to sample, and its signals: measurements first, then one a block.
+#[derive(Clone, Debug)]
+pub struct Memory<S> {
+    pub states: Vec<S>,
+    signals: Vec<S>,
+    scratch: Vec<S>,
+}
+
+/// A signal near a corner of its block: how far off, as a part of the law's range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlockKink {
+    pub block: String,
+    pub distance: f64,
+}
+
+impl Diagram {
+    pub(super) fn new(
+        spec: &ControlSpec,
+        blocks: Vec<(String, Block)>,
+        command_slots: Vec<usize>,
+        probe_slots: Vec<usize>,
+    ) -> Self {
+        let mut memory = 0;
+        let place = |(name, block): (String, Block)| {
+            let placed = Placed { name, memory, block };
+            memory += placed.block.states();
+            placed
+        };
+        Self {
+            sample_time: spec.sample_time,
+            measurement_names: spec.measurements.clone(),
+            command_targets: spec.commands.iter().map(|c| c.target.clone()).collect(),
+            probe_channels: spec.probes.iter().map(|p| (p.channel.clone(), p.unit.clone())).collect(),
+            blocks: blocks.into_iter().map(place).collect(),
+            command_slots,
+            probe_slots,
+        }
+    }
+
+    pub fn memory<S: Scalar>(&self) -> Memory<S> {
+        let states = self.blocks.iter().map(|b| b.block.states()).sum();
+        let scratch = self.blocks.iter().map(|b| b.block.scratch()).max().unwrap_or(0);
+        Memory {
+            states: vec![S::zero(); states],
+            signals: vec![S::zero(); self.measurement_names.len() + self.blocks.len()],
+            scratch: vec![S::zero(); scratch],
+        }
+    }
+
+    /// Name of each number of the memory: that of its block and a count.
+    pub fn state_names(&self) -> Vec<String> {
+        let of = |b: &Placed| (0..b.block.states()).map(|i| format!("{}.{i}", b.name)).collect::<Vec<_>>();
+        self.blocks.iter().flat_map(of).collect()
+    }
+
+    /// The PI blocks, whose integrals a steady state has to find.
+    pub fn integrators(&self) -> usize {
+        self.pis().count()
+    }
+
+    fn pis(&self) -> impl Iterator<Item = &Pi> {
+        self.blocks.iter().filter_map(|b| if let Block::Pi(pi) = &b.block { Some(pi) } else { None })
+    }
+
+    /// Goes to the state that constant measurements would lead to, each PI with its given integral.
+    ///
+    /// # Errors
+    /// As `step`.
+    pub fn settle<S: Scalar>(
+        &self,
+        memory: &mut Memory<S>,
+        measurements: &[S],
+        integrals: &[S],
+    ) -> Result<(), ControlError> {
+        let mut integrals = integrals.iter();
+        self.sweep(memory, measurements, |block, states, scratch, signals| {
+            let integral = if matches!(block, Block::Pi(_)) { integrals.next().copied() } else { None };
+            block.reset(states, scratch, signals, integral.unwrap_or_default())
+        })
+    }
+
+    /// One sample.
+    ///
+    /// # Errors
+    /// A wrong number of measurements, a value that is not finite, an input outside its table.
+    pub fn step<S: Scalar>(&self, memory: &mut Memory<S>, measurements: &[S]) -> Result<(), ControlError> {
+        let ts = self.sample_time;
+        self.sweep(memory, measurements, |block, states, scratch, signals| block.step(states, scratch, signals, ts))
+    }
+
+    fn sweep<S: Scalar>(
+        &self,
+        memory: &mut Memory<S>,
+        measurements: &[S],
+        mut law: impl FnMut(&Block, &mut [S], &mut [S], &[S]) -> Result<S, Outside>,
+    ) -> Result<(), ControlError> {
+        let offset = self.measurement_names.len();
+        if measurements.len() != offset {
+            return Err(ControlError::Measurements { expected: offset, given: measurements.len() });
+        }
+        if let Some(i) = measurements.iter().position(|m| !m.value().is_finite()) {
+            let (name, value) = (self.measurement_names[i].clone(), measurements[i].value());
+            return Err(ControlError::Measurement { name, value });
+        }
+        let Memory { states, signals, scratch } = memory;
+        signals[..offset].copy_from_slice(measurements);
+        for (i, Placed { name, block, memory }) in self.blocks.iter().enumerate() {
+            let own = &mut states[*memory..*memory + block.states()];
+            let value = law(block, own, scratch, signals).map_err(|Outside { value, low, high }| {
+                ControlError::OutsideTable { block: name.clone(), value, low, high }
+            })?;
+            if !value.value().is_finite() {
+                return Err(ControlError::NotFinite { block: name.clone(), value: value.value() });
+            }
+            signals[offset + i] = value;
+        }
+        Ok(())
+    }
+
+    /// What the last pass commands, in the order of `command_targets`.
+    pub fn commands<S: Scalar>(&self, memory: &Memory<S>) -> impl Iterator<Item = S> {
+        self.command_slots.iter().map(|&slot| memory.signals[slot])
+    }
+
+    /// The probed signals of the last pass, in the order of `probe_channels`.
+    pub fn probes<S: Scalar>(&self, memory: &Memory<S>) -> impl Iterator<Item = S> {
+        self.probe_slots.iter().map(|&slot| memory.signals[slot])
+    }
+
+    /// What each PI lacks to a steady state after `settle` with these integrals; nil in one.
+    pub fn unsettled<S: Scalar>(&self, memory: &Memory<S>, integrals: &[S]) -> impl Iterator<Item = S> {
+        self.pis().zip(integrals).map(|(pi, &integral)| pi.unsettled(integral, &memory.signals))
+    }
+
+    /// Blocks whose signal is within `near` of a limit or corner, as a part of their range.
+    pub fn kinks(&self, memory: &Memory<f64>, near: f64) -> Vec<BlockKink> {
+        let kink = |b: &Placed| {
+            let distance = b.block.kink(&memory.signals).filter(|d| *d < near)?;
+            Some(BlockKink { block: b.name.clone(), distance })
+        };
+        self.blocks.iter().filter_map(kink).collect()
+    }
+}

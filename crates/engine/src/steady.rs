@@ -1,0 +1,259 @@
+//! Steady states: every body at rest relative to the others while the vehicle rolls on, controllers settled.
+//! Newton's method on the rates of the model itself with the exact Jacobian; the curve is entered step by step.
+
+use crate::control::Memory;
+use crate::equilibrium::{design_state, settle_on_rails};
+use crate::error::{EngineError, Fault};
+use crate::inputs::nominal;
+use crate::model::{Course, Model};
+use crate::rates::{Workspace, rates};
+use crate::wiring::Wiring;
+use crate::channels;
+use klingel_physics::{Dual, Scalar};
+use nalgebra::{DMatrix, DVector};
+
+/// Directions of one dual pass.
+pub const DIRECTIONS: usize = 32;
+const MAX_ITERATIONS: usize = 60;
+/// The Newton step, relative to 1 + |x|, at which the state is found.
+const TOLERANCE: f64 = 1e-10;
+/// A wheel may move so far in one iteration \[m\], which keeps it on the rail.
+const WHEEL_STEP: f64 = 4e-5;
+/// Parts of a curve by which it is entered: the first one, and the least before giving up.
+const ENTRY: [f64; 2] = [1.0, 1.0 / 256.0];
+
+/// A steady state.
+#[derive(Clone, Debug)]
+pub struct Steady {
+    /// States; the arc length of the reference body is that of the start.
+    pub x: Vec<f64>,
+    /// Inputs with the commands of the controllers.
+    pub inputs: Vec<f64>,
+    /// Of the PI blocks.
+    pub integrals: Vec<f64>,
+    /// Newton steps, those on the way into the curve included.
+    pub iterations: usize,
+}
+
+/// The unknowns: states but the free ones, then commands, then integrals.
+struct Problem<'a> {
+    m: &'a Model,
+    wiring: Option<&'a Wiring>,
+    /// Share of the curvature and cant of a uniform track.
+    share: f64,
+    free: Vec<usize>,
+}
+
+/// The steady state at `m.speed` of the plant with its controllers.
+///
+/// # Errors
+/// `EngineError::Equilibrium` when Newton's method does not converge.
+pub fn steady(m: &Model, wiring: Option<&Wiring>, start: Option<&Steady>) -> Result<Steady, EngineError> {
+    let mut problem = Problem::new(m, wiring);
+    if let Some(start) = start {
+        // the neighbour's state is nearly there
+        if let Ok(found) = problem.newton(start.clone()) {
+            return Ok(found);
+        }
+    }
+    let curved = matches!(m.track, Course::Uniform(t) if t.curvature != 0.0 || t.cant != 0.0);
+    let mut state = problem.guess();
+    if !curved {
+        return problem.newton(state);
+    }
+    problem.share = 0.0;
+    state = problem.newton(state)?;
+    let mut step = ENTRY[0];
+    while problem.share < 1.0 {
+        let before = problem.share;
+        problem.share = (before + step).min(1.0);
+        match problem.newton(state.clone()) {
+            Ok(found) => {
+                state = found;
+                step *= 2.0;
+            }
+            Err(error) if 0.5 * step < ENTRY[1] => return Err(error),
+            Err(_) => {
+                problem.share = before;
+                step *= 0.5;
+            }
+        }
+    }
+    Ok(state)
+}
+
+impl<'a> Problem<'a> {
+    fn new(m: &'a Model, wiring: Option<&'a Wiring>) -> Self {
+        let reference = &m.bodies[m.reference()];
+        let (s_ref, v_ref) = (reference.state, reference.state + if reference.pitches { 6 } else { 5 });
+        // the place along the track is free; without a speed hold the speed of the reference body is given instead
+        let given = |i: &usize| *i == s_ref || (m.hold.is_none() && *i == v_ref);
+        let free = (0..m.state_count()).filter(|i| !given(i)).collect();
+        Self { m, wiring, share: 1.0, free }
+    }
+
+    fn guess(&self) -> Steady {
+        let mut x = design_state(self.m);
+        settle_on_rails(self.m, &mut x);
+        let integrals = vec![0.0; self.wiring.map_or(0, |w| w.diagram.integrators())];
+        Steady { x, inputs: self.m.inputs.clone(), integrals, iterations: 0 }
+    }
+
+    fn driven(&self) -> &[usize] {
+        self.wiring.map_or(&[], |w| &w.driven)
+    }
+
+    fn newton(&self, mut at: Steady) -> Result<Steady, EngineError> {
+        let (states, commands) = (self.free.len(), self.driven().len());
+        let n = states + commands + at.integrals.len();
+        let mut jacobian = DMatrix::zeros(n, n);
+        let mut worst = (f64::INFINITY, 0);
+        for iteration in 0..MAX_ITERATIONS {
+            let fail = |worst| self.failed(iteration, worst);
+            let residual = self.linearised(&at, &mut jacobian).map_err(|_| fail(worst))?;
+            worst = (0..n).map(|i| (residual[i].abs(), i)).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a });
+            let step = jacobian.clone().lu().solve(&-&residual).ok_or_else(|| fail(worst))?;
+            if !step.iter().all(|d| d.is_finite()) {
+                return Err(fail(worst));
+            }
+            let share = (WHEEL_STEP / self.wheel_step(&step)).min(1.0);
+            let mut size: f64 = 0.0;
+            for (j, value) in self.free.iter().map(|&i| (true, i)).chain(self.driven().iter().map(|&i| (false, i))).enumerate() {
+                let value = if value.0 { &mut at.x[value.1] } else { &mut at.inputs[value.1] };
+                size = size.max(step[j].abs() / (1.0 + value.abs()));
+                *value += share * step[j];
+            }
+            for (value, step) in at.integrals.iter_mut().zip(step.iter().skip(states + commands)) {
+                size = size.max(step.abs() / (1.0 + value.abs()));
+                *value += share * step;
+            }
+            at.iterations += 1;
+            if size < TOLERANCE {
+                return Ok(at);
+            }
+        }
+        Err(self.failed(MAX_ITERATIONS, worst))
+    }
+
+    /// The largest vertical and rolling step of a body with wheels, half a gauge being about a metre.
+    fn wheel_step(&self, step: &DVector<f64>) -> f64 {
+        let places = self.m.wheels.iter().map(|w| self.m.bodies[w.body].state).flat_map(|i| [i + 2, i + 3]);
+        places.filter_map(|i| self.free.iter().position(|&f| f == i)).map(|j| step[j].abs()).fold(0.0, f64::max)
+    }
+
+    fn failed(&self, iterations: usize, (residual, i): (f64, usize)) -> EngineError {
+        let state = match (self.free.get(i), self.wiring) {
+            (Some(&i), _) => self.m.state_names[i].clone(),
+            (None, Some(w)) => {
+                let i = i - self.free.len();
+                w.diagram.command_targets.get(i).cloned().unwrap_or_else(|| "an integral of the controllers".into())
+            }
+            (None, None) => "none".into(),
+        };
+        EngineError::Equilibrium { speed: self.m.speed, iterations, residual, state }
+    }
+
+    /// What is nil in a steady state, and its Jacobian.
+    fn linearised(&self, at: &Steady, jacobian: &mut DMatrix<f64>) -> Result<DVector<f64>, Fault> {
+        let n = jacobian.nrows();
+        let (m, commands) = (self.m, self.driven().len());
+        let mut pass = Pass::<Dual<DIRECTIONS>>::new(m, self.wiring);
+        let mut residual = vec![Dual::default(); n];
+        for first in (0..n).step_by(DIRECTIONS) {
+            let seed = |value: f64, place: usize| Dual {
+                value,
+                slope: core::array::from_fn(|d| f64::from(u8::from(first + d == place))),
+            };
+            pass.x.iter_mut().zip(&at.x).for_each(|(to, &x)| *to = Dual { value: x, ..Dual::default() });
+            pass.inputs.iter_mut().zip(&at.inputs).for_each(|(to, &u)| *to = Dual { value: u, ..Dual::default() });
+            if let Course::Uniform(track) = m.track {
+                let away = self.share - 1.0;
+                pass.inputs[m.places.track] = pass.inputs[m.places.track] + away * track.curvature;
+                pass.inputs[m.places.track + 1] = pass.inputs[m.places.track + 1] + away * track.cant;
+            }
+            for (j, &i) in self.free.iter().enumerate() {
+                pass.x[i] = seed(at.x[i], j);
+            }
+            for (j, &i) in self.driven().iter().enumerate() {
+                pass.inputs[i] = seed(at.inputs[i], self.free.len() + j);
+            }
+            for (j, &value) in at.integrals.iter().enumerate() {
+                pass.integrals[j] = seed(value, self.free.len() + commands + j);
+            }
+            pass.evaluate(m, self.wiring)?;
+            self.residual(&pass, &mut residual);
+            for d in 0..DIRECTIONS.min(n - first) {
+                for i in 0..n {
+                    jacobian[(i, first + d)] = residual[i].slope[d];
+                }
+            }
+        }
+        Ok(DVector::from_iterator(n, residual.iter().map(|r| r.value)))
+    }
+
+    /// Rates, with those of the arc lengths relative to the reference body's; commands less what they should be; what
+    /// the integrals lack.
+    fn residual<S: Scalar>(&self, pass: &Pass<S>, into: &mut [S]) {
+        let m = self.m;
+        let s_ref = m.bodies[m.reference()].state;
+        for (to, &i) in into.iter_mut().zip(&self.free) {
+            *to = pass.dx[i];
+            if m.bodies.iter().any(|b| b.state == i) {
+                *to = *to - pass.dx[s_ref];
+            }
+        }
+        if let (Some(wiring), Some(memory)) = (self.wiring, &pass.memory) {
+            let wanted = wiring.diagram.commands(memory).zip(&wiring.driven).map(|(u, &i)| pass.inputs[i] - u);
+            let rest = wanted.chain(wiring.diagram.unsettled(memory, &pass.integrals));
+            into[self.free.len()..].iter_mut().zip(rest).for_each(|(to, value)| *to = value);
+        }
+    }
+}
+
+/// One evaluation of the plant, its channels and the settled controllers.
+pub struct Pass<S> {
+    pub x: Vec<S>,
+    pub inputs: Vec<S>,
+    pub integrals: Vec<S>,
+    pub dx: Vec<S>,
+    pub row: Vec<S>,
+    pub memory: Option<Memory<S>>,
+    pub work: Workspace<S>,
+    measured: Vec<S>,
+}
+
+impl<S: Scalar> Pass<S> {
+    pub fn new(m: &Model, wiring: Option<&Wiring>) -> Self {
+        let n = m.state_count();
+        Self {
+            x: vec![S::zero(); n],
+            inputs: nominal(m),
+            integrals: vec![S::zero(); wiring.map_or(0, |w| w.diagram.integrators())],
+            dx: vec![S::zero(); n],
+            row: vec![S::zero(); channels::list(m).len()],
+            memory: wiring.map(|w| w.diagram.memory()),
+            work: Workspace::new(m),
+            measured: vec![S::zero(); wiring.map_or(0, |w| w.measured.len())],
+        }
+    }
+
+    /// Rates and channels, and the controllers where constant measurements would lead them.
+    ///
+    /// # Errors
+    /// A wheel that has left its rail; a controller that fails.
+    pub fn evaluate(&mut self, m: &Model, wiring: Option<&Wiring>) -> Result<(), Fault> {
+        rates(m, &self.x, &self.inputs, &mut self.work, &mut self.dx)?;
+        channels::fill(m, &self.x, &self.inputs, &self.work, &mut self.row);
+        if let (Some(wiring), Some(memory)) = (wiring, &mut self.memory) {
+            self.measured.iter_mut().zip(&wiring.measured).for_each(|(to, &i)| *to = self.row[i]);
+            let settled = wiring.diagram.settle(memory, &self.measured, &self.integrals);
+            settled.map_err(|e| Fault::Control(e.to_string()))?;
+        }
+        Ok(())
+    }
+
+    /// What the controllers measure.
+    pub fn measured(&self) -> &[S] {
+        &self.measured
+    }
+}
