@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 from klingel.doctor import warn_if_stale
 
 if TYPE_CHECKING:
-    from klingel import assess, contact, control, drives, library, plot, report, study, track
+    from klingel import assess, contact, control, drives, library, linear, plot, report, study, track
+    from klingel.linear import linearise
     from klingel.result import load, progress, save, simulate, simulate_spec
     from klingel.scenario import Scenario
     from klingel.track import Track
@@ -17,12 +18,13 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
-_MODULES = ("assess", "contact", "control", "drives", "library", "plot", "report", "study", "track")
+_MODULES = ("assess", "contact", "control", "drives", "library", "linear", "plot", "report", "study", "track")
 
 _HOMES = {
     "Scenario": "klingel.scenario",
     "Track": "klingel.track",
     "Vehicle": "klingel.vehicle",
+    "linearise": "klingel.linear",
     "load": "klingel.result",
     "progress": "klingel.result",
     "save": "klingel.result",
@@ -40,6 +42,8 @@ __all__ = [
     "control",
     "drives",
     "library",
+    "linear",
+    "linearise",
     "load",
     "plot",
     "progress",

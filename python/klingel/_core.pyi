@@ -11,6 +11,7 @@ __all__ = [
     "ContactPair",
     "CoreError",
     "CreepTableMaker",
+    "OperatingPoint",
     "Progress",
     "build_info",
     "cache",
@@ -19,6 +20,8 @@ __all__ = [
     "creep_force",
     "creep_laws",
     "creep_table",
+    "linearise",
+    "operating_point",
     "prepare",
     "profile",
     "simulate",
@@ -33,6 +36,15 @@ class Progress:
     @property
     def fraction(self) -> float: ...
     def cancel(self) -> None: ...
+
+@final
+class OperatingPoint:
+    @property
+    def iterations(self) -> int: ...
+    def linearise(self) -> dict[str, Any]: ...
+
+def operating_point(spec: str, near: OperatingPoint | None = None) -> OperatingPoint: ...
+def linearise(spec: str) -> dict[str, Any]: ...
 
 _Prepared = tuple[Literal["compiled", "disk", "memory"], float, str | None]
 _Floats = NDArray[np.float64]

@@ -24,6 +24,7 @@ FLOORS = [
     {"scenario"},
     {"lower"},
     {"result"},
+    {"linear"},
     {"assess"},
     {"plot"},
     {"report"},

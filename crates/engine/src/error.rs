@@ -31,6 +31,8 @@ pub enum EngineError {
          in {state}; check stiffnesses, preloads and wheel loads"
     )]
     Equilibrium { speed: f64, iterations: usize, residual: f64, state: String },
+    #[error("no linear model: {fault}")]
+    Linear { fault: Fault },
     #[error("the run was cancelled at {time:.3} s")]
     Cancelled { time: f64 },
 }

@@ -3,11 +3,11 @@
 
 use crate::inputs::Places;
 use crate::spec::RunSpec;
+use klingel_physics::Scalar;
 use klingel_physics::contact::creep::FallingFriction;
 use klingel_physics::contact::{ContactTable, CreepForce};
 use klingel_physics::drives::{self, Actuator};
 use klingel_physics::elements::{Bushing, Maxwell, Stop};
-use klingel_physics::Scalar;
 use klingel_physics::track::{Alignment, TrackFrame, UniformTrack};
 use std::sync::Arc;
 

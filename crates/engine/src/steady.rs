@@ -1,6 +1,7 @@
 //! Steady states: every body at rest relative to the others while the vehicle rolls on, controllers settled.
 //! Newton's method on the rates of the model itself with the exact Jacobian; the curve is entered step by step.
 
+use crate::channels;
 use crate::control::Memory;
 use crate::equilibrium::{design_state, settle_on_rails};
 use crate::error::{EngineError, Fault};
@@ -8,7 +9,6 @@ use crate::inputs::nominal;
 use crate::model::{Course, Model};
 use crate::rates::{Workspace, rates};
 use crate::wiring::Wiring;
-use crate::channels;
 use klingel_physics::{Dual, Scalar};
 use nalgebra::{DMatrix, DVector};
 
@@ -118,7 +118,9 @@ impl<'a> Problem<'a> {
             }
             let share = (WHEEL_STEP / self.wheel_step(&step)).min(1.0);
             let mut size: f64 = 0.0;
-            for (j, value) in self.free.iter().map(|&i| (true, i)).chain(self.driven().iter().map(|&i| (false, i))).enumerate() {
+            for (j, value) in
+                self.free.iter().map(|&i| (true, i)).chain(self.driven().iter().map(|&i| (false, i))).enumerate()
+            {
                 let value = if value.0 { &mut at.x[value.1] } else { &mut at.inputs[value.1] };
                 size = size.max(step[j].abs() / (1.0 + value.abs()));
                 *value += share * step[j];

@@ -3,6 +3,7 @@
 
 mod creep;
 mod creep_table;
+mod linear;
 mod pair;
 
 use klingel_engine::{EngineError, Spec};
@@ -152,6 +153,9 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(profile, m)?)?;
     m.add_function(wrap_pyfunction!(creep::creep_force, m)?)?;
     m.add_function(wrap_pyfunction!(creep::creep_laws, m)?)?;
+    m.add_class::<linear::OperatingPoint>()?;
+    m.add_function(wrap_pyfunction!(linear::operating_point, m)?)?;
+    m.add_function(wrap_pyfunction!(linear::linearise, m)?)?;
     m.add_class::<creep_table::CreepTableMaker>()?;
     m.add_function(wrap_pyfunction!(creep_table::creep_table, m)?)?;
     m.add_function(wrap_pyfunction!(creep_table::cache_folder, m)?)?;

@@ -125,13 +125,7 @@ impl Block {
     }
 
     /// The output of this sample, `ts` after the one before.
-    pub fn step<S: Scalar>(
-        &self,
-        memory: &mut [S],
-        scratch: &mut [S],
-        signals: &[S],
-        ts: f64,
-    ) -> Result<S, Outside> {
+    pub fn step<S: Scalar>(&self, memory: &mut [S], scratch: &mut [S], signals: &[S], ts: f64) -> Result<S, Outside> {
         Ok(match self {
             Self::Sum { terms, bias } => {
                 terms.iter().fold(S::constant(*bias), |sum, &(slot, gain)| sum + gain.value(signals) * signals[slot])
@@ -223,7 +217,8 @@ mod tests {
 
     #[test]
     fn sum_product_and_quotient() {
-        let mut sum = Kept::new(Block::Sum { terms: vec![(0, Operand::Number(2.0)), (1, Operand::Slot(2))], bias: 0.5 });
+        let mut sum =
+            Kept::new(Block::Sum { terms: vec![(0, Operand::Number(2.0)), (1, Operand::Slot(2))], bias: 0.5 });
         assert_eq!(sum.step(&[1.0, 3.0, -1.0]), -0.5);
         assert_eq!(Kept::new(Block::Product { factors: vec![0, 1, 1] }).step(&[2.0, 3.0]), 18.0);
         let mut quotient = Kept::new(Block::Quotient { numerator: 0, denominator: 1, floor: 0.5 });

@@ -139,7 +139,8 @@ impl Plant {
                 if i >= first && i < first + WIDE { Dual::variable(x[i], i - first) } else { Dual::constant(x[i]) }
             };
             let dual: Vec<_> = (0..n).map(seed).collect();
-            rates(&self.model, &dual, &klingel_engine::inputs::nominal(&self.model), &mut work, &mut dx).expect("wheels on their rails");
+            rates(&self.model, &dual, &klingel_engine::inputs::nominal(&self.model), &mut work, &mut dx)
+                .expect("wheels on their rails");
             for d in 0..WIDE.min(n - first) {
                 for i in 0..n {
                     slopes[(i, first + d)] = dx[i].slope[d];
