@@ -15,6 +15,10 @@ use nalgebra::{DMatrix, DVector};
 /// Directions of one dual pass.
 pub const DIRECTIONS: usize = 32;
 const MAX_ITERATIONS: usize = 60;
+/// A step that is this short and no longer gets shorter is rounding.
+const STALLED: f64 = 1e-7;
+/// The least part of a Newton step.
+const LEAST_SHARE: f64 = 1.0 / 64.0;
 /// The Newton step, relative to 1 + |x|, at which the state is found.
 const TOLERANCE: f64 = 1e-10;
 /// A wheel may move so far in one iteration \[m\], which keeps it on the rail.
@@ -103,38 +107,60 @@ impl<'a> Problem<'a> {
         self.wiring.map_or(&[], |w| &w.driven)
     }
 
+    /// Newton's method, damped as Deuflhard's natural test wants it: the next step of the same Jacobian must be shorter
+    /// than this one (Newton Methods for Nonlinear Problems, 2004, sec. 3.3).
     fn newton(&self, mut at: Steady) -> Result<Steady, EngineError> {
-        let (states, commands) = (self.free.len(), self.driven().len());
-        let n = states + commands + at.integrals.len();
+        let n = self.free.len() + self.driven().len() + at.integrals.len();
         let mut jacobian = DMatrix::zeros(n, n);
-        let mut worst = (f64::INFINITY, 0);
+        let mut plain = Pass::<f64>::new(self.m, self.wiring);
+        let (mut worst, mut before) = ((f64::INFINITY, 0), f64::INFINITY);
         for iteration in 0..MAX_ITERATIONS {
             let fail = |worst| self.failed(iteration, worst);
             let residual = self.linearised(&at, &mut jacobian).map_err(|_| fail(worst))?;
             worst = (0..n).map(|i| (residual[i].abs(), i)).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a });
-            let step = jacobian.clone().lu().solve(&-&residual).ok_or_else(|| fail(worst))?;
-            if !step.iter().all(|d| d.is_finite()) {
-                return Err(fail(worst));
-            }
-            let share = (WHEEL_STEP / self.wheel_step(&step)).min(1.0);
-            let mut size: f64 = 0.0;
-            for (j, value) in
-                self.free.iter().map(|&i| (true, i)).chain(self.driven().iter().map(|&i| (false, i))).enumerate()
-            {
-                let value = if value.0 { &mut at.x[value.1] } else { &mut at.inputs[value.1] };
-                size = size.max(step[j].abs() / (1.0 + value.abs()));
-                *value += share * step[j];
-            }
-            for (value, step) in at.integrals.iter_mut().zip(step.iter().skip(states + commands)) {
-                size = size.max(step.abs() / (1.0 + value.abs()));
-                *value += share * step;
-            }
+            let lu = jacobian.clone().lu();
+            let solve = |r: &DVector<f64>| lu.solve(&-r).filter(|d| d.iter().all(|d| d.is_finite()));
+            let step = solve(&residual).ok_or_else(|| fail(worst))?;
             at.iterations += 1;
-            if size < TOLERANCE {
-                return Ok(at);
+            let size = self.size(&at, &step);
+            if size < TOLERANCE || (size < STALLED && size > 0.5 * before) {
+                return Ok(self.moved(&at, &step, 1.0));
             }
+            before = size;
+            let mut share = (WHEEL_STEP / self.wheel_step(&step)).min(1.0);
+            let mut next = self.moved(&at, &step, share);
+            while share > LEAST_SHARE {
+                let ahead = self.plain(&next, &mut plain).ok().and_then(|r| solve(&r));
+                if ahead.is_some_and(|ahead| self.size(&at, &ahead) < size * (1.0 - 0.25 * share)) {
+                    break;
+                }
+                share *= 0.5;
+                next = self.moved(&at, &step, share);
+            }
+            at = next;
         }
         Err(self.failed(MAX_ITERATIONS, worst))
+    }
+
+    /// The unknowns in their order: free states, commands, integrals.
+    fn unknowns(&self, at: &Steady) -> impl Iterator<Item = f64> {
+        let states = self.free.iter().map(|&i| at.x[i]);
+        states.chain(self.driven().iter().map(|&i| at.inputs[i])).chain(at.integrals.iter().copied())
+    }
+
+    /// Of a step, each part over 1 + its unknown.
+    fn size(&self, at: &Steady, step: &DVector<f64>) -> f64 {
+        let parts = self.unknowns(at).zip(step.iter()).map(|(x, d)| d.abs() / (1.0 + x.abs()));
+        parts.fold(0.0, f64::max)
+    }
+
+    fn moved(&self, at: &Steady, step: &DVector<f64>, share: f64) -> Steady {
+        let mut to = at.clone();
+        let mut parts = step.iter().map(|d| share * d);
+        self.free.iter().zip(&mut parts).for_each(|(&i, d)| to.x[i] += d);
+        self.driven().iter().zip(&mut parts).for_each(|(&i, d)| to.inputs[i] += d);
+        to.integrals.iter_mut().zip(&mut parts).for_each(|(value, d)| *value += d);
+        to
     }
 
     /// The largest vertical and rolling step of a body with wheels, half a gauge being about a metre.
@@ -155,6 +181,28 @@ impl<'a> Problem<'a> {
         EngineError::Equilibrium { speed: self.m.speed, iterations, residual, state }
     }
 
+    /// Writes a state as constants.
+    fn put<S: Scalar>(&self, at: &Steady, pass: &mut Pass<S>) {
+        let m = self.m;
+        pass.x.iter_mut().zip(&at.x).for_each(|(to, &x)| *to = S::constant(x));
+        pass.inputs.iter_mut().zip(&at.inputs).for_each(|(to, &u)| *to = S::constant(u));
+        pass.integrals.iter_mut().zip(&at.integrals).for_each(|(to, &w)| *to = S::constant(w));
+        if let Course::Uniform(track) = m.track {
+            let [curvature, cant] = [0, 1].map(|i| m.places.track + i);
+            pass.inputs[curvature] = pass.inputs[curvature] + (self.share - 1.0) * track.curvature;
+            pass.inputs[cant] = pass.inputs[cant] + (self.share - 1.0) * track.cant;
+        }
+    }
+
+    /// What is nil in a steady state.
+    fn plain(&self, at: &Steady, pass: &mut Pass<f64>) -> Result<DVector<f64>, Fault> {
+        self.put(at, pass);
+        pass.evaluate(self.m, self.wiring)?;
+        let mut residual = DVector::zeros(self.unknowns(at).count());
+        self.residual(pass, residual.as_mut_slice());
+        Ok(residual)
+    }
+
     /// What is nil in a steady state, and its Jacobian.
     fn linearised(&self, at: &Steady, jacobian: &mut DMatrix<f64>) -> Result<DVector<f64>, Fault> {
         let n = jacobian.nrows();
@@ -166,13 +214,7 @@ impl<'a> Problem<'a> {
                 value,
                 slope: core::array::from_fn(|d| f64::from(u8::from(first + d == place))),
             };
-            pass.x.iter_mut().zip(&at.x).for_each(|(to, &x)| *to = Dual { value: x, ..Dual::default() });
-            pass.inputs.iter_mut().zip(&at.inputs).for_each(|(to, &u)| *to = Dual { value: u, ..Dual::default() });
-            if let Course::Uniform(track) = m.track {
-                let away = self.share - 1.0;
-                pass.inputs[m.places.track] = pass.inputs[m.places.track] + away * track.curvature;
-                pass.inputs[m.places.track + 1] = pass.inputs[m.places.track + 1] + away * track.cant;
-            }
+            self.put(at, &mut pass);
             for (j, &i) in self.free.iter().enumerate() {
                 pass.x[i] = seed(at.x[i], j);
             }

@@ -117,8 +117,7 @@ class LinearModel:
         content = matrices | cells | {"Ts": Ts, "speed": self.speed, "name": self.name}
 
         def write(part: Path) -> None:
-            with part.open("wb") as file:
-                savemat(file, content, oned_as="column", do_compression=True)
+            savemat(str(part), content, appendmat=False, oned_as="column", do_compression=True)
 
         return _whole(Path(path), write)
 

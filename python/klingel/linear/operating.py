@@ -58,7 +58,8 @@ def solve(spec: Spec, near: OperatingPoint | None = None) -> OperatingPoint:
     """The core's operating point of a spec; errors: SimulationError where there is none."""
     extension = core()
     try:
-        return extension.operating_point(json.dumps(spec, allow_nan=False), near)
+        point: OperatingPoint = extension.operating_point(json.dumps(spec, allow_nan=False), near)
+        return point
     except extension.CoreError as error:
         raise SimulationError(f"{spec['name']}: {error}") from None
 
