@@ -21,6 +21,9 @@ Complex = NDArray[np.complex128]
 
 Number = TypeVar("Number", np.float64, np.complex128)
 
+GONE = 1e-3
+"""Sampled eigenvalues below this magnitude are memory of delays, gone within a few samples."""
+
 MEETS = 1e-10
 """Entries of the balanced matrix below this share of its largest one are rounding: its parts do not meet there."""
 
@@ -64,6 +67,18 @@ def eigenvalues(model: LinearModel) -> Complex:
     reduced = _Reduced.of(model)
     values = np.concatenate([np.linalg.eigvals(block.matrix) for block in reduced.blocks()])
     return continuous(values, model.sample_time)
+
+
+def lives(values: Complex, sample_time: float | None) -> NDArray[np.bool_]:
+    """Which eigenvalues s [1/s] are of the vehicle: of a sampled model, not those of the bare memory of its controllers.
+
+    Memory is z = 0, gone after a sample or a few (|z| < 0.001), and z = -1 to rounding, which a bilinear filter has
+    where its pole at infinity was and which no feedback has moved.
+    """
+    if sample_time is None:
+        return np.isfinite(values)
+    z = np.exp(np.where(np.isfinite(values), values, -np.inf) * sample_time)
+    return np.asarray((np.abs(z) >= GONE) & (np.abs(z + 1.0) > GONE**2))
 
 
 def continuous(values: Complex, sample_time: float | None) -> Complex:

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from klingel.errors import InputError
-from klingel.linear.blocks import eigenvalues
+from klingel.linear.blocks import eigenvalues, lives
 from klingel.linear.model import LinearModel
 from klingel.linear.modes import STILL, Mode, modes
+from klingel.linear.sweep import Sweep
 from klingel.scenario import Scenario
 from klingel.units import Quantity, to_si
 
@@ -61,7 +62,7 @@ def critical_speed(
     lowest: Quantity = "10 m/s",
     highest: Quantity = "120 m/s",
     points: int = 23,
-    at: float | None = None,
+    at: Quantity | None = None,
     controllers: bool = True,
     step: Callable[[int, int], None] | None = None,
 ) -> CriticalSpeed:
@@ -71,8 +72,6 @@ def critical_speed(
     with how many speeds of the sweep are done and how many there are.
     Errors: InputError for a range that is none, and as `klingel.linearise`.
     """
-    from klingel.linear.linearise import linearise
-
     ends = to_si(lowest, "m/s", key="lowest"), to_si(highest, "m/s", key="highest")
     if not 0.0 < ends[0] < ends[1]:
         raise InputError.single(
@@ -81,8 +80,10 @@ def critical_speed(
     if points < 2:
         raise InputError.single("points", points, "make no sweep", remedy="give 2 or more")
 
+    sweep = Sweep(at=at, controllers=controllers)
+
     def least(speed: float) -> complex:
-        return least_stable(linearise(scenario.replace(speed=speed), at=at, controllers=controllers))
+        return least_stable(sweep(scenario.replace(speed=speed)).model)
 
     speeds = np.linspace(*ends, points)
     swept = []
@@ -107,9 +108,9 @@ def critical_speed(
 
 
 def least_stable(model: LinearModel) -> complex:
-    """The eigenvalue with the largest real part [1/s], free positions aside; that with positive imaginary part."""
+    """The eigenvalue with the largest real part [1/s], free positions and bare memory aside; that with positive imaginary part."""
     s = eigenvalues(model)
-    s = s[np.isfinite(s) & (np.abs(s) > STILL)]
+    s = s[lives(s, model.sample_time) & (np.abs(s) > STILL)]
     most = complex(s[np.argmax(s.real)])
     return complex(most.real, abs(most.imag))
 

@@ -13,9 +13,10 @@ from scipy.optimize import linear_sum_assignment
 
 from klingel.errors import InputError
 from klingel.linear import parameters
-from klingel.linear.blocks import Complex, eigen
+from klingel.linear.blocks import Complex, eigen, lives
 from klingel.linear.model import LinearModel
-from klingel.linear.modes import GONE, STILL, Mode, modes
+from klingel.linear.modes import STILL, Mode, modes
+from klingel.linear.sweep import Sweep
 from klingel.scenario import Scenario
 from klingel.units import Quantity, to_si
 
@@ -75,7 +76,7 @@ def root_locus(
     parameter: str,
     values: Iterable[Quantity],
     *,
-    at: float | None = None,
+    at: Quantity | None = None,
     controllers: bool = True,
     step: Callable[[int, int], None] | None = None,
 ) -> RootLocus:
@@ -85,14 +86,13 @@ def root_locus(
     units, neighbours next to each other; at, controllers: as for `klingel.linearise`; step: called with how many values
     are done and how many there are. Errors: InputError for an unknown parameter, and as `klingel.linearise`.
     """
-    from klingel.linear.linearise import linearise
-
     unit = parameters.unit(scenario, parameter)
     numbers = np.array([to_si(value, unit, key=parameter) for value in values])
     if numbers.size == 0:
         raise InputError.single("values", [], "holds no value", remedy=f"give values of {parameter} [{unit}]")
     changed = [parameters.replace(scenario, parameter, float(number)) for number in numbers]
-    models = (linearise(each, at=at, controllers=controllers) for each in changed)
+    sweep = Sweep(at=at, controllers=controllers)
+    models = (sweep(each).model for each in changed)
     followed = np.array(list(_branches(_told(models, len(changed), step)))).T
     middle = len(changed) // 2
     names = _names(followed[:, middle], modes(changed[middle], at=at, controllers=controllers))
@@ -119,7 +119,7 @@ def _names(values: Complex, found: Sequence[Mode]) -> list[str]:
 def follow(models: Iterable[LinearModel]) -> Complex:
     """Eigenvalues of neighbouring models as branches (n, k): each is followed by its size and by its shape.
 
-    Of conjugate pairs the lower one is NaN; what starts as memory of delays (|z| < 0.001) is no branch.
+    Of conjugate pairs the lower one is NaN; what starts as bare memory of controllers is no branch.
     """
     return _upper(np.array(list(_branches(models))).T)[0]
 
@@ -133,8 +133,8 @@ def _branches(models: Iterable[LinearModel]) -> Iterator[Complex]:
         found = _seen(model)
         if now is None:
             weights = 1.0 / np.maximum(np.sqrt(np.mean(np.abs(found.shapes) ** 2, axis=1)), 1e-300)
-            slow = found.roots.real > (-np.inf if model.sample_time is None else np.log(GONE) / model.sample_time)
-            now = _Seen(found.roots[slow], _scaled(found.shapes[:, slow], weights))
+            own = lives(found.roots, model.sample_time)
+            now = _Seen(found.roots[own], _scaled(found.shapes[:, own], weights))
         else:
             found = found._replace(shapes=_scaled(found.shapes, weights))
             ahead = now.roots if before is None else 2.0 * now.roots - before

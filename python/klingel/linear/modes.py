@@ -10,18 +10,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from klingel.errors import InputError
-from klingel.linear.blocks import eigen
+from klingel.linear.blocks import eigen, lives
 from klingel.linear.model import LinearModel
 from klingel.linear.names import Guess, guess
 from klingel.linear.shapes import Shape, Structure
+from klingel.linear.sweep import Sweep
 from klingel.lower import Spec, lower
 from klingel.scenario import Scenario
+from klingel.units import Quantity
 
 if TYPE_CHECKING:
     import pandas as pd
-
-GONE = 1e-3
-"""Sampled eigenvalues below this magnitude are memory of delays, gone within a few samples: no modes."""
 
 STILL = 1e-4
 """Eigenvalues of smaller magnitude are those of a free position or of rounding [1/s]."""
@@ -69,7 +68,7 @@ def modes(
     model: LinearModel | Scenario,
     of: Scenario | Spec | None = None,
     *,
-    at: float | None = None,
+    at: Quantity | None = None,
     controllers: bool = True,
     plant: LinearModel | None = None,
 ) -> tuple[Mode, ...]:
@@ -78,7 +77,7 @@ def modes(
     model: a linear model of the scenario or spec `of`, or a scenario, which is then linearised (`at`, `controllers` as
     for `klingel.linearise`); plant: the continuous model beside a sampled one, for the energy in the contacts.
     Of a conjugate pair the one with positive frequency is given. Left out are the free position along the track and
-    what delays remember (|z| < 0.001). Errors: InputError as `klingel.linearise`.
+    the bare memory of controllers (`klingel.linear.blocks.lives`). Errors: InputError as `klingel.linearise`.
     """
     if isinstance(model, Scenario):
         return _of_scenario(model, at, controllers)
@@ -87,17 +86,14 @@ def modes(
         raise InputError.single("model", model.name, "does not say what its states are the motion of", remedy=remedy)
     structure = Structure(lower(of) if isinstance(of, Scenario) else of, model, plant)
     values, left, right = eigen(model)
-    counted = [i for i, s in enumerate(values) if _counts(complex(s), model.sample_time)]
+    counted = np.flatnonzero(lives(values, model.sample_time) & (values.imag >= 0.0))
     found = [_mode(structure, complex(values[i]), left[:, i], right[:, i]) for i in counted]
     return tuple(sorted(found, key=lambda m: (not m.oscillates, m.frequency if m.oscillates else -m.eigenvalue.real)))
 
 
-def _of_scenario(scenario: Scenario, at: float | None, controllers: bool) -> tuple[Mode, ...]:
-    from klingel.linear.linearise import linearise
-
-    model = linearise(scenario, at=at, controllers=controllers)
-    plant = model if model.sample_time is None else linearise(scenario, at=at, controllers=False)
-    return modes(model, scenario, plant=plant)
+def _of_scenario(scenario: Scenario, at: Quantity | None, controllers: bool) -> tuple[Mode, ...]:
+    made = Sweep(at=at, controllers=controllers)(scenario)
+    return modes(made.model, made.spec, plant=made.plant)
 
 
 def table(found: tuple[Mode, ...]) -> pd.DataFrame:
@@ -117,11 +113,6 @@ def table(found: tuple[Mode, ...]) -> pd.DataFrame:
         for mode in found
     ]
     return pd.DataFrame(rows, columns=["name", "frequency", "damping", "real", "imag", "body", "element"])
-
-
-def _counts(s: complex, sample_time: float | None) -> bool:
-    """One of each conjugate pair, and no memory of delays."""
-    return s.imag >= 0.0 and (sample_time is None or s.real >= np.log(GONE) / sample_time)
 
 
 def _mode(structure: Structure, s: complex, left: Shape, right: Shape) -> Mode:
