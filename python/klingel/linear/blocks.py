@@ -70,7 +70,7 @@ def eigenvalues(model: LinearModel) -> Complex:
 
 
 def lives(values: Complex, sample_time: float | None) -> NDArray[np.bool_]:
-    """Which eigenvalues s [1/s] are of the vehicle: of a sampled model, not those of the bare memory of its controllers.
+    """Which eigenvalues s [1/s] are of the vehicle, not of the bare memory of the controllers of a sampled model.
 
     Memory is z = 0, gone after a sample or a few (|z| < 0.001), and z = -1 to rounding, which a bilinear filter has
     where its pole at infinity was and which no feedback has moved.

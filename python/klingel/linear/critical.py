@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 SPEED_RESOLUTION = 1e-3
 """Of a critical speed [m/s]."""
 
+SLOWEST = 0.1
+"""Frequency from which an eigenvalue is one of an oscillation that counts [Hz]."""
+
 Outcome = Literal["found", "stable throughout", "unstable throughout"]
 
 
@@ -34,7 +37,7 @@ class CriticalSpeed:
 
     outcome: "found", or that it is stable, or unstable, at every speed looked at; speed [m/s], frequency [Hz] and mode
     at the edge (without `found`: None, and those of the least damped mode at the speed nearest to the edge);
-    speeds (k) [m/s]; growth (k): largest real part of all eigenvalues [1/s]; damping (k), frequencies (k) [Hz]: of the
+    speeds (k) [m/s]; growth (k): largest real part of those that count [1/s]; damping (k), frequencies (k) [Hz]: of the
     mode that has it.
     """
 
@@ -94,7 +97,8 @@ def critical_speed(
     s = np.array(swept)
     outcome, edge = _edge(speeds, s.real, lambda speed: least(speed).real)
     found = modes(scenario.replace(speed=edge), at=at, controllers=controllers)
-    critical = max((mode for mode in found if abs(mode.eigenvalue) > STILL), key=lambda mode: mode.eigenvalue.real)
+    deciding = least(edge)
+    critical = min(found, key=lambda mode: abs(mode.eigenvalue - deciding))
     return CriticalSpeed(
         outcome,
         edge if outcome == "found" else None,
@@ -108,9 +112,14 @@ def critical_speed(
 
 
 def least_stable(model: LinearModel) -> complex:
-    """The eigenvalue with the largest real part [1/s], free positions and bare memory aside; that with positive imaginary part."""
+    """The eigenvalue that decides on stability [1/s], the upper of a pair: the largest real part of all oscillations.
+
+    One that does not oscillate counts only if it grows: slow decay, such as that of the speed hold, hides nothing.
+    Free positions and the bare memory of controllers are not looked at.
+    """
     s = eigenvalues(model)
-    s = s[lives(s, model.sample_time) & (np.abs(s) > STILL)]
+    swings = np.abs(s.imag) > 2.0 * np.pi * SLOWEST
+    s = s[lives(s, model.sample_time) & (np.abs(s) > STILL) & (swings | (s.real > 0.0))]
     most = complex(s[np.argmax(s.real)])
     return complex(most.real, abs(most.imag))
 

@@ -33,11 +33,12 @@ OSCILLATES = 1e-6
 class Mode:
     """One mode of a linear model: x(t) = Re(shape e^(eigenvalue t)).
 
-    name: guessed from the energies; eigenvalue: [1/s], that of the pair with positive imaginary part; shape: over the
+    name: guessed from what moves; eigenvalue: [1/s], that of the pair with positive imaginary part; shape: over the
     model's states, its largest motion real; bodies: body (or `<body>.<rotor>`, `<drive>.motor`) to its share of the
     kinetic energy; elements: element to its share of the elastic energy; parts: kind of state (bodies, rotors, dampers,
-    actuators, drives, hold, controller) to its share in the eigenvalue (participation factors). Shares are means over a
-    cycle and sum to one, or are empty where there is no such energy.
+    actuators, drives, hold, controller) to its share in the eigenvalue (participation factors: the left vector times
+    the right one, summed over the kind). Energies are means over a cycle. Shares sum to one, those of `elements` by
+    their amounts as a wheelset's contacts may give energy; without energy there are none.
     """
 
     name: str
@@ -57,6 +58,11 @@ class Mode:
         """Damping ratio: -Re/|eigenvalue|, negative for an unstable mode; zero for a free position."""
         size = abs(self.eigenvalue)
         return -self.eigenvalue.real / size if size > STILL else 0.0
+
+    @property
+    def swings(self) -> bool:
+        """Whether it oscillates visibly: with a damping ratio below 0.995."""
+        return self.oscillates and self.damping < 0.995
 
     @property
     def oscillates(self) -> bool:
@@ -117,11 +123,12 @@ def table(found: tuple[Mode, ...]) -> pd.DataFrame:
 
 def _mode(structure: Structure, s: complex, left: Shape, right: Shape) -> Mode:
     shape = _turned(structure, right)
-    participation = np.abs(np.conj(left) * right)
-    participation /= participation.sum()
-    parts = {name: float(participation[places].sum()) for name, places in structure.groups.items() if len(places)}
+    factors = np.conj(left) * right
+    parts = {name: float(abs(factors[places].sum())) for name, places in structure.groups.items() if len(places)}
+    whole = sum(parts.values())
+    parts = {name: share / whole for name, share in parts.items()}
     bodies, elements = structure.kinetic(shape), structure.potential(shape)
-    seen = Guess(structure, complex(s), shape, parts, bodies)
+    seen = Guess(structure, complex(s), shape, parts, np.abs(factors), bodies)
     return Mode(guess(seen), complex(s), shape, _shares(bodies), _shares(elements), parts)
 
 

@@ -3,11 +3,13 @@ A guess from energies and phases, for people to read; nothing is computed from i
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from klingel.linear.shapes import Body, Shape, Structure
 
@@ -17,6 +19,9 @@ ROLLS = 0.35
 """Hunting: the lateral velocity of a wheelset is its speed times its yaw, to this share of their squares."""
 
 SIDEWAYS = ("y", "yaw", "roll")
+
+WITHIN = {"controller": 0.6}
+"""Share of a kind of inner states from which a mode is called after it; half for the other kinds."""
 
 HOLDS = 0.2
 """Share of the speed hold's integral from which a motion along the track is that of the hold."""
@@ -30,12 +35,13 @@ ALONE = 0.85
 
 @dataclass(frozen=True)
 class Guess:
-    """What a name is guessed from: eigenvalue s, shape, shares of the kinds of states, kinetic energies."""
+    """What a name is guessed from: eigenvalue s, shape, shares of kinds of states and of states, kinetic energies."""
 
     structure: Structure
     s: complex
     shape: Shape
     parts: Mapping[str, float]
+    participation: NDArray[np.float64]
     kinetic: Mapping[str, float]
 
     @property
@@ -115,8 +121,10 @@ class Guess:
 
 def guess(mode: Guess) -> str:
     """The name of a mode."""
-    part = max(mode.parts, key=lambda name: mode.parts[name])
-    if part in ("hold", "controller", "actuators", "dampers") or (part == "drives" and _electric(mode)):
+    inner = {name: share for name, share in mode.parts.items() if name not in ("bodies", "rotors")}
+    part = max(inner, key=lambda name: inner[name], default="")
+    least = WITHIN.get(part, 0.5)
+    if part and inner[part] > least and not (part == "drives" and mode.oscillates):
         return _inner(mode, part)
     kind, direction = mode.lead()
     if direction == "x" and mode.parts.get("hold", 0.0) > HOLDS:
@@ -128,18 +136,26 @@ def guess(mode: Guess) -> str:
 
 def _inner(mode: Guess, part: str) -> str:
     """Of a mode that lives in states which are no motion."""
-    words = {"hold": "speed hold", "controller": "controller", "actuators": "steering actuator", "drives": "motor"}
-    if part != "dampers":
-        return words[part]
-    forces = {
-        m["name"]: abs(mode.shape[mode.structure.places[f"{m['name']}.force"]]) for m in mode.structure.spec["maxwells"]
-    }
-    return f"relaxation of {plain(max(forces, key=lambda name: forces[name]))}"
+    places = mode.structure.groups[part]
+    most = mode.structure.model.states[int(places[np.argmax(mode.participation[places])])].name
+    match part:
+        case "controller":
+            return f"controller, {block(most)}"
+        case "dampers":
+            return f"relaxation of {plain(most.removesuffix('.force'))}"
+        case _:
+            return {"hold": "speed hold", "actuators": "steering actuator", "drives": "motor"}[part]
 
 
-def _electric(mode: Guess) -> bool:
-    """Whether armature currents or motor speeds, not shafts, are most of the drives' part: a real mode."""
-    return not mode.oscillates
+def block(state: str) -> str:
+    """The block of a controller's state, wherever in the vehicle it is.
+
+    >>> block("control.bogie1.wheelset2.gyro.slow.0"), block("bogie1.wheelset1.actuator_left.force.put_out")
+    ('gyro slow', 'force put out')
+    """
+    words = state.removeprefix("control.").split(".")
+    of_vehicle = re.compile(r"(bogie|wheelset)\d|body|left|right|actuator_.*|now|\d+")
+    return " ".join(word.replace("_", " ") for word in words if not of_vehicle.fullmatch(word)) or state
 
 
 def _mechanical(mode: Guess, kind: str, direction: str) -> str:
@@ -245,14 +261,3 @@ def by_kind(shares: Mapping[str, float]) -> dict[str, float]:
     """Shares of elements summed over those of one kind, the largest first."""
     summed = _summed(shares, plain)
     return dict(sorted(summed.items(), key=lambda item: -abs(item[1])))
-
-
-def distinct(names: Iterable[str]) -> list[str]:
-    """Names with a number behind those that come more than once."""
-    listed = list(names)
-    seen: dict[str, int] = {}
-    out = []
-    for name in listed:
-        seen[name] = seen.get(name, 0) + 1
-        out.append(f"{name} {seen[name]}" if listed.count(name) > 1 else name)
-    return out

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 HIGHEST = 30.0
 """Frequencies that figures show [Hz]: what people feel and hear of a bogie; contact and shaft modes lie above."""
 
+SLOWEST = 0.2
+"""Least frequency in the plane of root loci [Hz]."""
+
 LINES: Sequence[tuple[str, str | tuple[int, tuple[float, ...]], str]] = (
     ("#000000", "-", "o"),
     ("#0072B2", (0, (5, 1.8)), "s"),
@@ -42,14 +45,14 @@ def modes_figure(found: Sequence[Mode], *, title: str, highest: float = HIGHEST)
     """Oscillations by frequency, one row each: name, frequency, damping ratio.
 
     Args:
-        found: modes; those that do not oscillate or are faster than `highest` are not drawn.
+        found: modes; those that do not swing or are faster than `highest` are not drawn.
         title: above the figure, such as the vehicle and its speed.
         highest: frequency [Hz].
 
     Returns:
         The figure. Unstable modes lie left of the line at zero.
     """
-    drawn = [mode for mode in found if mode.oscillates and mode.frequency <= highest][::-1]
+    drawn = [mode for mode in found if mode.swings and mode.frequency <= highest][::-1]
     with styled():
         figure, (axis,) = panels(1, width=7.2, height=1.6 + 0.21 * max(len(drawn), 4))
         ratios = 100.0 * np.array([mode.damping for mode in drawn])
@@ -57,7 +60,9 @@ def modes_figure(found: Sequence[Mode], *, title: str, highest: float = HIGHEST)
         axis.hlines(rows, 0.0, ratios, color=PALE, lw=1.0)
         for kind, (color, marker) in KINDS.items():
             of = [i for i, mode in enumerate(drawn) if _kind(mode) == kind]
-            label = {"body": "mostly car body", "bogie": "mostly bogies", "wheelset": "mostly wheelsets", "": "other"}[kind]
+            label = {"body": "mostly car body", "bogie": "mostly bogies", "wheelset": "mostly wheelsets", "": "other"}[
+                kind
+            ]
             if of:
                 axis.plot(ratios[of], rows[of], marker, color=color, ms=5.5, label=label, zorder=3)
         axis.axvline(0.0, color=INK, lw=0.9)
@@ -102,7 +107,9 @@ def locus_figure(locus: RootLocus, *, title: str, highest: float = HIGHEST) -> F
         figure = Figure(figsize=(9.6, 4.6))
         plane, ratio = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
         figure.suptitle(title, x=0.01, ha="left", weight="bold", size=10)
-        _plane(figure, plane, locus, values, highest, f"{locus.parameter}  [{unit}]" if unit != "1" else locus.parameter)
+        _plane(
+            figure, plane, locus, values, highest, f"{locus.parameter}  [{unit}]" if unit != "1" else locus.parameter
+        )
         _ratios(ratio, locus, values, highest)
         ratio.set_xlabel(f"{locus.parameter}  [{unit}]" if unit != "1" else locus.parameter)
         figure.legend(
@@ -112,7 +119,7 @@ def locus_figure(locus: RootLocus, *, title: str, highest: float = HIGHEST) -> F
 
 
 def least_damped(locus: RootLocus, count: int, highest: float = HIGHEST) -> list[int]:
-    """Branches with the smallest damping ratio anywhere, the smallest first, among oscillations up to `highest` [Hz]."""
+    """Branches with the smallest damping ratios anywhere, the smallest first; oscillations up to `highest` [Hz]."""
     damping = np.where((locus.frequency > 0.05) & (locus.frequency <= highest), locus.damping, np.nan)
     seen = [i for i in range(damping.shape[1]) if np.isfinite(damping[:, i]).any()]
     return sorted(seen, key=lambda i: float(np.nanmin(damping[:, i])))[:count]
@@ -131,7 +138,9 @@ def _plane(
     right = max(float(np.nanmax(s.real[frequency <= highest], initial=0.0)), 0.04 * -left)
     axis.axvspan(0.0, 1.15 * right, color=BAND, zorder=0)
     axis.set_xlim(left, 1.15 * right)
-    axis.set_ylim(-0.02 * highest, highest)
+    axis.set_yscale("log")
+    axis.set_ylim(SLOWEST, highest)
+    axis.yaxis.set_major_formatter("{x:g}")
     axis.set_xlabel("real part  [1/s]")
     axis.set_ylabel("frequency  [Hz]")
     figure.colorbar(shown, ax=axis, label=label, pad=0.02, aspect=30)
