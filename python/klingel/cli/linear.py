@@ -3,6 +3,7 @@ The scenario comes from a file, or from a library vehicle and a speed on straigh
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,6 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
+
+# Threads of a linear algebra library cost more than they give on matrices of this size; heard if it is not yet loaded.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -129,7 +133,7 @@ def rootlocus(
             "first": f"{100 * locus.damping[0, i]:.1f}",
             "last": f"{100 * locus.damping[-1, i]:.1f}",
             "least": f"{100 * np.nanmin(locus.damping[:, i]):.1f}",
-            "at": f"{locus.values[np.nanargmin(locus.damping[:, i])]:.4g}",
+            "at": f"{values[np.nanargmin(locus.damping[:, i])]:.4g}",
         }
         for i in least_damped(locus, 12)
     ]
@@ -206,7 +210,7 @@ def scenario_of(
     settings: list[str] | None,
     without: list[str] | None,
 ) -> Scenario:
-    """The scenario of a file, or of a vehicle at a speed on straight track, with single numbers set; errors: InputError."""
+    """Of a file, or a vehicle at a speed on straight track, with single numbers set; errors: InputError."""
     from klingel import library
     from klingel.errors import InputError
     from klingel.linear import parameters

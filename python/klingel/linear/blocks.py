@@ -77,7 +77,9 @@ def lives(values: Complex, sample_time: float | None) -> NDArray[np.bool_]:
     """
     if sample_time is None:
         return np.isfinite(values)
-    z = np.exp(np.where(np.isfinite(values), values, -np.inf) * sample_time)
+    finite = np.isfinite(values)
+    z = np.zeros(values.shape, dtype=np.complex128)
+    z[finite] = np.exp(values[finite] * sample_time)
     return np.asarray((np.abs(z) >= GONE) & (np.abs(z + 1.0) > GONE**2))
 
 
@@ -90,8 +92,10 @@ def continuous(values: Complex, sample_time: float | None) -> Complex:
     values = np.asarray(values, dtype=np.complex128)
     if sample_time is None:
         return values
-    with np.errstate(divide="ignore"):
-        return np.asarray(np.log(values) / sample_time)
+    s = np.full(values.shape, -np.inf, dtype=np.complex128)
+    remembered = values != 0.0
+    s[remembered] = np.log(values[remembered]) / sample_time
+    return s
 
 
 class _Block(NamedTuple):

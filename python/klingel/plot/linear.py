@@ -21,6 +21,11 @@ if TYPE_CHECKING:
 HIGHEST = 30.0
 """Frequencies that figures show [Hz]: what people feel and hear of a bogie; contact and shaft modes lie above."""
 
+FURTHEST = -60.0
+"""Left edge of that plane [1/s]; what decays faster does not matter to anybody."""
+
+TICKS = (0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0, 200.0)
+
 SLOWEST = 0.2
 """Least frequency in the plane of root loci [Hz]."""
 
@@ -140,7 +145,8 @@ def _plane(
     axis.set_xlim(left, 1.15 * right)
     axis.set_yscale("log")
     axis.set_ylim(SLOWEST, highest)
-    axis.yaxis.set_major_formatter("{x:g}")
+    axis.set_yticks([f for f in TICKS if f <= highest], [f"{f:g}" for f in TICKS if f <= highest])
+    axis.yaxis.set_minor_formatter("")
     axis.set_xlabel("real part  [1/s]")
     axis.set_ylabel("frequency  [Hz]")
     figure.colorbar(shown, ax=axis, label=label, pad=0.02, aspect=30)
@@ -149,7 +155,7 @@ def _plane(
 def _left_edge(s: NDArray[np.complex128], frequency: NDArray[np.float64], highest: float) -> float:
     """Far enough to the left for oscillations with a damping ratio of half, not for what decays at once."""
     oscillating = (frequency > 0.05) & (frequency <= highest) & (np.abs(s.real) < 0.6 * np.abs(s))
-    return min(1.15 * float(np.nanmin(s.real[oscillating], initial=0.0)), -5.0)
+    return float(np.clip(1.15 * np.nanmin(s.real[oscillating], initial=0.0), FURTHEST, -5.0))
 
 
 def _ratios(axis: Axes, locus: RootLocus, values: NDArray[np.float64], highest: float) -> None:
