@@ -17,6 +17,14 @@ pub const DIRECTIONS: usize = 32;
 const MAX_ITERATIONS: usize = 60;
 /// A step that is this short and no longer gets shorter is rounding.
 const STALLED: f64 = 1e-7;
+/// Parts of the speed by which a detour goes, and in how many steps it comes back.
+const DETOURS: [f64; 4] = [0.035, -0.035, 0.07, -0.07];
+const DETOUR_STEPS: usize = 14;
+/// First and last step of the relaxation \[s\], and how many there may be.
+const RELAXATION: [f64; 2] = [5e-3, 100.0];
+const MAX_RELAXATIONS: usize = 300;
+/// A wheel may move so far in one step of it \[m\].
+const RELAXED_WHEEL_STEP: f64 = 4e-4;
 /// The least part of a Newton step.
 const LEAST_SHARE: f64 = 1.0 / 64.0;
 /// The Newton step, relative to 1 + |x|, at which the state is found.
@@ -45,6 +53,8 @@ struct Problem<'a> {
     wiring: Option<&'a Wiring>,
     /// Share of the curvature and cant of a uniform track.
     share: f64,
+    /// Share of the held speed.
+    speed_share: f64,
     free: Vec<usize>,
 }
 
@@ -55,8 +65,10 @@ struct Problem<'a> {
 pub fn steady(m: &Model, wiring: Option<&Wiring>, start: Option<&Steady>) -> Result<Steady, EngineError> {
     let mut problem = Problem::new(m, wiring);
     if let Some(start) = start {
-        // the neighbour's state is nearly there
-        if let Ok(found) = problem.newton(start.clone()) {
+        // the neighbour's state is nearly there, though its speed, voltages and the like are not ours
+        let mut state = Steady { inputs: m.inputs.clone(), iterations: 0, ..start.clone() };
+        problem.driven().iter().for_each(|&i| state.inputs[i] = start.inputs[i]);
+        if let Ok(found) = problem.newton(state) {
             return Ok(found);
         }
     }
@@ -76,7 +88,11 @@ pub fn steady(m: &Model, wiring: Option<&Wiring>, start: Option<&Steady>) -> Res
                 state = found;
                 step *= 2.0;
             }
-            Err(error) if 0.5 * step < ENTRY[1] => return Err(error),
+            Err(_) if 0.5 * step < ENTRY[1] => {
+                // the branch turns back: let the motion find the next one
+                problem.share = 1.0;
+                return problem.settled(state.clone()).or_else(|_| problem.detour(state));
+            }
             Err(_) => {
                 problem.share = before;
                 step *= 0.5;
@@ -93,7 +109,29 @@ impl<'a> Problem<'a> {
         // the place along the track is free; without a speed hold the speed of the reference body is given instead
         let given = |i: &usize| *i == s_ref || (m.hold.is_none() && *i == v_ref);
         let free = (0..m.state_count()).filter(|i| !given(i)).collect();
-        Self { m, wiring, share: 1.0, free }
+        Self { m, wiring, share: 1.0, speed_share: 1.0, free }
+    }
+
+    /// By way of the motion.
+    fn settled(&self, state: Steady) -> Result<Steady, EngineError> {
+        self.newton(self.relaxed(state)?)
+    }
+
+    /// By way of a neighbouring speed, from which this one is approached in steps.
+    fn detour(&mut self, state: Steady) -> Result<Steady, EngineError> {
+        let mut last = self.failed(0, (f64::INFINITY, 0));
+        for away in DETOURS {
+            let mut at = Ok(state.clone());
+            for left in (0..=DETOUR_STEPS).rev() {
+                self.speed_share = 1.0 + away * left as f64 / DETOUR_STEPS as f64;
+                at = at.and_then(|s| self.newton(s.clone()).or_else(|_| self.settled(s)));
+            }
+            match at {
+                Ok(found) => return Ok(found),
+                Err(error) => last = error,
+            }
+        }
+        Err(last)
     }
 
     fn guess(&self) -> Steady {
@@ -142,6 +180,38 @@ impl<'a> Problem<'a> {
         Err(self.failed(MAX_ITERATIONS, worst))
     }
 
+    /// Follows the motion with implicit Euler steps that grow, (M/dt - J) d = f: long ones damp everything, so that it
+    /// ends near a steady state, be that stable or not (pseudo-transient continuation; Kelley & Keyes, SIAM J. Numer.
+    /// Anal. 35, 1998). M is one for states and nil for commands and integrals.
+    fn relaxed(&self, mut at: Steady) -> Result<Steady, EngineError> {
+        let n = self.unknowns(&at).count();
+        let mut jacobian = DMatrix::zeros(n, n);
+        let mut dt = RELAXATION[0];
+        let mut found = None;
+        for iteration in 0..MAX_RELAXATIONS {
+            let failed = |_| self.failed(iteration, (f64::INFINITY, 0));
+            let Ok(residual) = self.linearised(&at, &mut jacobian) else {
+                // a step too long has left the rail
+                at = found.clone().ok_or_else(|| failed(()))?;
+                dt *= 0.25;
+                continue;
+            };
+            found = Some(at.clone());
+            let mut matrix = -&jacobian;
+            (0..self.free.len()).for_each(|i| matrix[(i, i)] += 1.0 / dt);
+            let step = matrix.lu().solve(&residual).filter(|d| d.iter().all(|d| d.is_finite()));
+            let step = step.ok_or_else(|| failed(()))?;
+            let share = (RELAXED_WHEEL_STEP / self.wheel_step(&step)).min(1.0);
+            at = self.moved(&at, &step, share);
+            at.iterations += 1;
+            dt *= if share < 1.0 { 0.5 } else { 1.3 };
+            if dt > RELAXATION[1] {
+                return Ok(at);
+            }
+        }
+        Err(self.failed(MAX_RELAXATIONS, (f64::INFINITY, 0)))
+    }
+
     /// The unknowns in their order: free states, commands, integrals.
     fn unknowns(&self, at: &Steady) -> impl Iterator<Item = f64> {
         let states = self.free.iter().map(|&i| at.x[i]);
@@ -187,6 +257,10 @@ impl<'a> Problem<'a> {
         pass.x.iter_mut().zip(&at.x).for_each(|(to, &x)| *to = S::constant(x));
         pass.inputs.iter_mut().zip(&at.inputs).for_each(|(to, &u)| *to = S::constant(u));
         pass.integrals.iter_mut().zip(&at.integrals).for_each(|(to, &w)| *to = S::constant(w));
+        if m.hold.is_some() {
+            let speed = &mut pass.inputs[m.places.speed];
+            *speed = *speed * self.speed_share;
+        }
         if let Course::Uniform(track) = m.track {
             let [curvature, cant] = [0, 1].map(|i| m.places.track + i);
             pass.inputs[curvature] = pass.inputs[curvature] + (self.share - 1.0) * track.curvature;
