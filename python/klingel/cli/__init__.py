@@ -1,4 +1,4 @@
-"""Command line of Klingel: `klingel study perez2004`, `run`, `profile`, `contact-table`, `vehicles`, `doctor`.
+"""Command line of Klingel: `klingel study perez2004`, `run`, `modes`, `rootlocus`, `critical-speed`, `profile` ...
 Bad input prints one message and exits with 2; Ctrl-C exits with 130; nothing half-written is left behind."""
 
 from __future__ import annotations

@@ -9,6 +9,8 @@ from typing import Annotated
 
 import typer
 
+from klingel.cli import linear
+
 app = typer.Typer(
     name="klingel",
     help="Simulator and design bench for mechatronic railway vehicles.",
@@ -18,6 +20,9 @@ app = typer.Typer(
 )
 study = typer.Typer(help="Run a study: all its runs, figures and the report.", no_args_is_help=True)
 app.add_typer(study, name="study")
+app.command()(linear.modes)
+app.command()(linear.rootlocus)
+app.command("critical-speed")(linear.critical_speed)
 
 
 def _version(wanted: bool) -> None:

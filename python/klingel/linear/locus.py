@@ -1,0 +1,176 @@
+"""Root loci: the eigenvalues of a vehicle over its speed, conicity, friction or any number of vehicle and controllers.
+Every eigenvalue is followed from one value to the next by its size and its shape."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from klingel.errors import InputError
+from klingel.linear import parameters
+from klingel.linear.blocks import Complex, eigen, lives
+from klingel.linear.model import LinearModel
+from klingel.linear.modes import STILL, Mode, modes
+from klingel.linear.sweep import Sweep
+from klingel.scenario import Scenario
+from klingel.units import Quantity, to_si
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+LIKENESS = 1.0
+"""Weight of two shapes being unlike against the relative distance of their eigenvalues."""
+
+
+@dataclass(frozen=True, eq=False)
+class RootLocus:
+    """Eigenvalues over one parameter, every branch one mode that was followed.
+
+    parameter, unit: what varies; values (k): ascending or as given; eigenvalues (k, n) [1/s], one of each conjugate
+    pair; names (n): guessed at the middle value; speed: of the vehicle [m/s], None where that is what varies.
+    """
+
+    parameter: str
+    unit: str
+    values: NDArray[np.float64]
+    eigenvalues: Complex
+    names: tuple[str, ...]
+    speed: float | None = None
+
+    @property
+    def frequency(self) -> NDArray[np.float64]:
+        """Of the damped oscillations [Hz] (k, n)."""
+        return np.asarray(np.abs(self.eigenvalues.imag) / (2.0 * np.pi))
+
+    @property
+    def damping(self) -> NDArray[np.float64]:
+        """Damping ratios (k, n): negative where a mode is unstable, zero for a free position."""
+        size = np.abs(self.eigenvalues)
+        return np.asarray(np.where(size > STILL, -self.eigenvalues.real / np.maximum(size, STILL), 0.0))
+
+    def table(self) -> pd.DataFrame:
+        """Tidy rows: the parameter's value, branch, name, real and imaginary part [1/s], frequency [Hz], damping."""
+        import pandas as pd
+
+        k, n = self.eigenvalues.shape
+        return pd.DataFrame(
+            {
+                self.parameter: np.repeat(self.values, n),
+                "branch": np.tile(np.arange(n), k),
+                "name": np.tile(np.array(self.names, dtype=object), k),
+                "real": self.eigenvalues.real.ravel(),
+                "imag": self.eigenvalues.imag.ravel(),
+                "frequency": self.frequency.ravel(),
+                "damping": self.damping.ravel(),
+            }
+        )
+
+
+def root_locus(
+    scenario: Scenario,
+    parameter: str,
+    values: Iterable[Quantity],
+    *,
+    at: Quantity | None = None,
+    controllers: bool = True,
+    step: Callable[[int, int], None] | None = None,
+) -> RootLocus:
+    """The eigenvalues of a scenario over a parameter.
+
+    parameter: "speed", "friction", "conicity" or any path of `klingel.linear.parameters`; values: in SI or strings with
+    units, neighbours next to each other; at, controllers: as for `klingel.linearise`; step: called with how many values
+    are done and how many there are. Errors: InputError for an unknown parameter, and as `klingel.linearise`.
+    """
+    unit = parameters.unit(scenario, parameter)
+    numbers = np.array([to_si(value, unit, key=parameter) for value in values])
+    if numbers.size == 0:
+        raise InputError.single("values", [], "holds no value", remedy=f"give values of {parameter} [{unit}]")
+    changed = [parameters.replace(scenario, parameter, float(number)) for number in numbers]
+    sweep = Sweep(at=at, controllers=controllers)
+    models = (sweep(each).model for each in changed)
+    followed = np.array(list(_branches(_told(models, len(changed), step)))).T
+    middle = len(changed) // 2
+    names = _names(followed[:, middle], modes(changed[middle], at=at, controllers=controllers))
+    upper, kept = _upper(followed)
+    speed = None if parameter == "speed" else scenario.speed
+    return RootLocus(parameter, unit, numbers, upper.T, tuple(np.array(names, dtype=object)[kept]), speed)
+
+
+def _told(models: Iterable[LinearModel], count: int, step: Callable[[int, int], None] | None) -> Iterator[LinearModel]:
+    for done, model in enumerate(models, start=1):
+        yield model
+        if step is not None:
+            step(done, count)
+
+
+def _names(values: Complex, found: Sequence[Mode]) -> list[str]:
+    """Of every branch the name of the mode with its eigenvalue, or its conjugate."""
+    known = np.array([mode.eigenvalue for mode in found])
+    upper = values.real + 1j * np.abs(values.imag)
+    nearest = np.abs(upper[:, None] - known[None, :]).argmin(axis=1)
+    return [found[i].name for i in nearest]
+
+
+def follow(models: Iterable[LinearModel]) -> Complex:
+    """Eigenvalues of neighbouring models as branches (n, k): each is followed by its size and by its shape.
+
+    Of conjugate pairs the lower one is NaN; what starts as bare memory of controllers is no branch.
+    """
+    return _upper(np.array(list(_branches(models))).T)[0]
+
+
+def _branches(models: Iterable[LinearModel]) -> Iterator[Complex]:
+    """Eigenvalues (n) of one model after the other, in the order of the first."""
+    now: _Seen | None = None
+    before: Complex | None = None
+    weights = np.ones(1)
+    for model in models:
+        found = _seen(model)
+        if now is None:
+            weights = 1.0 / np.maximum(np.sqrt(np.mean(np.abs(found.shapes) ** 2, axis=1)), 1e-300)
+            own = lives(found.roots, model.sample_time)
+            now = _Seen(found.roots[own], _scaled(found.shapes[:, own], weights))
+        else:
+            found = found._replace(shapes=_scaled(found.shapes, weights))
+            ahead = now.roots if before is None else 2.0 * now.roots - before
+            order = _matched(now, ahead, found)
+            before, now = now.roots, _Seen(found.roots[order], found.shapes[:, order])
+        yield now.roots
+
+
+class _Seen(NamedTuple):
+    roots: Complex
+    shapes: Complex
+
+
+def _seen(model: LinearModel) -> _Seen:
+    values, _, right = eigen(model, left=False)
+    finite = np.isfinite(values)
+    return _Seen(values[finite], right[:, finite])
+
+
+def _scaled(shapes: Complex, weights: NDArray[np.float64]) -> Complex:
+    weighted = shapes * weights[:, None]
+    return np.asarray(weighted / np.linalg.norm(weighted, axis=0))
+
+
+def _matched(now: _Seen, ahead: Complex, found: _Seen) -> NDArray[np.intp]:
+    """For every branch the new eigenvalue that continues it; `ahead`: where a straight line would lead."""
+    size = np.abs(now.roots)[:, None] + np.abs(found.roots)[None, :] + 1.0
+    distance = np.abs(now.roots[:, None] - found.roots[None, :])
+    off_line = np.abs(ahead[:, None] - found.roots[None, :])
+    unlike = 1.0 - np.abs(np.conj(now.shapes.T) @ found.shapes) ** 2
+    rows, columns = linear_sum_assignment(np.minimum(distance, off_line) / size + LIKENESS * unlike)
+    return np.asarray(columns[np.argsort(rows)])
+
+
+def _upper(branches: Complex) -> tuple[Complex, NDArray[np.bool_]]:
+    """Without the lower halves of conjugate pairs: NaN where a branch is one; which branches are more than that."""
+    below = branches.imag < -1e-9 * np.maximum(np.abs(branches), 1.0)
+    kept = np.asarray(~below.all(axis=1))
+    return np.asarray(np.where(below, np.nan, branches)[kept]), kept
