@@ -105,13 +105,15 @@ def bifurcation(
     return Bifurcation(linear, speeds, amplitudes, tuple(sorted(held)), edge, fine)
 
 
-def run_at(scenario: Scenario, speed: float, *, duration: float, acceleration: float = 0.0) -> xr.Dataset:
-    """A run on endless straight track from a kick to the right; errors: SimulationError if it ends early."""
+def run_at(
+    scenario: Scenario, speed: float, *, duration: float, acceleration: float = 0.0, kick: float = KICK
+) -> xr.Dataset:
+    """A run on endless straight track from a kick to the right [m/s]; errors: SimulationError if it ends early."""
     spec = straight(lower(scenario.replace(speed=speed)))
     spec["run"] |= {
         "duration": math.ceil(duration / RECORD) * RECORD,
         "record_interval": RECORD,
-        "kicks": [{"body": body["name"], "velocity": [0.0, KICK, 0.0]} for body in spec["bodies"]],
+        "kicks": [{"body": body["name"], "velocity": [0.0, kick, 0.0]} for body in spec["bodies"]],
     }
     if spec["hold"] is not None:
         spec["hold"]["acceleration"] = acceleration
