@@ -13,7 +13,7 @@ use klingel_physics::{Dual, Scalar};
 use nalgebra::{DMatrix, DVector};
 
 /// Directions of one dual pass.
-pub const DIRECTIONS: usize = 32;
+pub const DIRECTIONS: usize = 16;
 const MAX_ITERATIONS: usize = 60;
 /// A step that is this short and no longer gets shorter is rounding.
 const STALLED: f64 = 1e-7;
