@@ -198,7 +198,8 @@ def critical_speed(
     import pandas as pd
 
     _print(pd.DataFrame(list(found.items()), columns=["what", "found"]), {"what": "", "found": ""}, title=title)
-    _write(critical.table() if cycles is None else pd.concat([critical.table(), cycles.table()]), table)
+    rows = critical.table() if cycles is None else pd.concat([critical.table(), cycles.table()])
+    _write(rows.sort_values("speed"), table)
     typer.echo(out)
 
 
