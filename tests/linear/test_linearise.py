@@ -3,6 +3,7 @@ Random inputs of every kind, two seconds, the passive vehicle and both strategie
 
 import copy
 import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,10 +12,9 @@ from scipy.signal import butter, sosfilt
 
 import klingel as kl
 from klingel.control import IRWLike, SolidLike
-from klingel.core import core
-from klingel.errors import InputError, SimulationError
+from klingel.errors import InputError
 from klingel.linear import LinearModel, linearise, steady_spec
-from klingel.linear.statespace import held, of_raw
+from klingel.linear.statespace import held
 from klingel.result import simulate_spec
 
 STRAIGHT = kl.Track.straight("1 km")
@@ -25,8 +25,8 @@ STEP = 1e-4
 """So short that the scheme is exact for the wheelsets' bouncing on the contact springs near 180 Hz as well."""
 SIZES = {"V": 0.03, "N": 0.3, "m": 1e-8, "m/s": 1e-8, "1/m": 3e-11, "N m": 10.0}
 SPEED = 1e-3
-"""Of the random inputs, and of the held speed [m/s]: so small that what is left of the nonlinearity stays below the limit, so large that rounding
-(10 m of arc length are known to 2e-15 m, and primary springs have 3e7 N/m) does as well."""
+"""Of the random inputs, and of the held speed [m/s]: so small that what is left of the nonlinearity stays below the
+limit, so large that rounding does as well (10 m of arc are known to 2e-15 m, and primary springs have 3e7 N/m)."""
 BAND = 20.0
 """Of the random inputs [Hz]: what a vehicle follows. White ones shake the wheelsets on their contact springs, and the
 creep forces' bend there, averaged, is no longer small beside the little that the bodies feel."""
@@ -101,3 +101,47 @@ def random_inputs(model: LinearModel) -> dict[str, np.ndarray]:
     count = round(DURATION / INTERVAL)
     sizes = {s.name: SPEED if s.name == "hold.speed" else SIZES[s.unit] for s in model.inputs}
     return {name: size * sosfilt(low, random.standard_normal(count)) for name, size in sizes.items()}
+
+
+def test_a_kink_is_named() -> None:
+    from klingel.linear import steady_state
+
+    track = kl.Track.curve(radius="1200 m", cant="160 mm", transition="285 m", arc="300 m")
+    near = steady_state(scenario("manchester_coach", None, track, "221.4 km/h"), at="600 m")
+    assert any("lateral_stop is near a corner" in text or "about to open" in text for text in near.warnings)
+    assert steady_state(scenario("manchester_coach", None, STRAIGHT)).warnings == ()
+
+
+def test_files_and_python_control_hold_the_same_model(tmp_path: Path) -> None:
+    from scipy.io import loadmat
+
+    whole = linearise(scenario("mechatronic_irw", IRWLike(), STRAIGHT))
+    model = whole.select(inputs=["wind.y"], outputs=["body.lateral_acceleration", "bogie1.wheelset1.y"])
+    read = json.loads(model.to_json(tmp_path / "model.json").read_text())
+    assert np.array_equal(read["A"], model.A)
+    assert read["inputs"] == [["wind.y", "N"]]
+    mat = loadmat(model.to_mat(tmp_path / "model.mat"))
+    assert np.array_equal(mat["A"], model.A)
+    assert float(mat["Ts"].item()) == model.sample_time == 1e-3
+    system = model.to_control()
+    assert system.output_labels == ["body_lateral_acceleration", "bogie1_wheelset1_y"]
+    assert np.array_equal(system.B, model.B)
+    assert not list(tmp_path.glob("*.tmp"))
+
+
+def test_unknown_names_are_refused_with_the_nearest() -> None:
+    model = linearise(scenario("manchester_coach", None, STRAIGHT))
+    with pytest.raises(InputError, match="did you mean"):
+        model.select(inputs=["wind.x"])
+    with pytest.raises(InputError, match="outside the track"):
+        linearise(scenario("manchester_coach", None, CURVE), at="99 km")
+
+
+def test_without_controllers_commands_are_inputs_of_a_continuous_model() -> None:
+    run = scenario("mechatronic_irw", IRWLike(), CURVE)
+    plant, closed = (linearise(run, at="500 m", controllers=c) for c in (False, True))
+    n = len(plant.states)
+    assert plant.sample_time is None
+    assert np.array_equal(closed.x[:n], plant.x)  # about the same, controlled operating point
+    force = plant.u[[s.name for s in plant.inputs].index("bogie1.wheelset1.actuator_left.force")]
+    assert abs(force) > 100.0
