@@ -16,7 +16,7 @@ from klingel.linear import parameters
 from klingel.linear.blocks import Complex, eigen, lives
 from klingel.linear.model import LinearModel
 from klingel.linear.modes import STILL, Mode, modes
-from klingel.linear.sweep import Sweep
+from klingel.linear.sweep import Linearised, Sweep
 from klingel.scenario import Scenario
 from klingel.units import Quantity, to_si
 
@@ -92,19 +92,22 @@ def root_locus(
         raise InputError.single("values", [], "holds no value", remedy=f"give values of {parameter} [{unit}]")
     changed = [parameters.replace(scenario, parameter, float(number)) for number in numbers]
     sweep = Sweep(at=at, controllers=controllers)
-    models = (sweep(each).model for each in changed)
-    followed = follow(_told(models, len(changed), step))
     middle = len(changed) // 2
-    names = _names(followed, middle, modes(changed[middle], at=at, controllers=controllers))
+    kept: list[Linearised] = []
+
+    def models() -> Iterator[LinearModel]:
+        for k, each in enumerate(changed):
+            made = sweep(each)
+            if k == middle:
+                kept.append(made)
+            yield made.model
+            if step is not None:
+                step(k + 1, len(changed))
+
+    followed = follow(models())
+    names = _names(followed, middle, modes(kept[0].model, kept[0].spec, plant=kept[0].plant))
     speed = None if parameter == "speed" else scenario.speed
     return RootLocus(parameter, unit, numbers, followed.T, names, speed)
-
-
-def _told(models: Iterable[LinearModel], count: int, step: Callable[[int, int], None] | None) -> Iterator[LinearModel]:
-    for done, model in enumerate(models, start=1):
-        yield model
-        if step is not None:
-            step(done, count)
 
 
 def _names(branches: Complex, middle: int, found: Sequence[Mode]) -> tuple[str, ...]:
