@@ -106,6 +106,7 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
     }
 
     let excitation = Excitation::new(m)?;
+    let moves = excitation.moves();
     let (mut held, mut inputs) = (m.inputs.clone(), m.inputs.clone());
     let mut w = Workspace::<f64>::new(m);
     let mut first = vec![0.0; x.len()];
@@ -118,7 +119,7 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
         if let (Some(c), true) = (&wired, sampled && k > 0) {
             c.drive(&mut held);
         }
-        excitation.apply(k, &held, &mut inputs);
+        excitation.apply(k, 0.0, &held, &mut inputs);
         let evaluated = rates(m, &x, &inputs, &mut w, &mut first).and_then(|()| {
             if k % record_every == 0 || sampled {
                 channels::fill(m, &x, &inputs, &w, &mut row);
@@ -140,7 +141,12 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
             if k == steps {
                 return Ok(());
             }
-            scheme.advance(&mut x, &first, |_, at, f| rates(m, at, &inputs, &mut w, f))?;
+            scheme.advance(&mut x, &first, |later, at, f| {
+                if moves {
+                    excitation.apply(k, later / step, &held, &mut inputs);
+                }
+                rates(m, at, &inputs, &mut w, f)
+            })?;
             finite(m, &x)
         });
         series.evaluations += 4;

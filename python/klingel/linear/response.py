@@ -222,13 +222,12 @@ def irregularity(
         raise InputError.single("kind", kind, "is no irregularity", remedy=nearest(kind, KINDS))
     points(model, frequencies)
     jw: Complex = np.asarray(2j * np.pi * np.atleast_1d(np.asarray(frequencies)), dtype=np.complex128)
-    direction, left, right = RAILS[kind]
     weights: dict[str, ArrayLike] = {}
     for wheel, distance in (positions(model) if behind is None else behind).items():
-        share = left if wheel.endswith("left") else right
-        met = share * np.exp(-jw * distance / model.speed)
-        weights[f"{wheel}.{direction}"] = met
-        weights[f"{wheel}.{direction}_rate"] = jw * met
+        met = np.exp(-jw * distance / model.speed)
+        for name, (left, right) in RAILS[kind].items():
+            share = left if wheel.endswith("left") else right
+            weights[f"{wheel}.{name}"] = share * (jw * met if name.endswith("_rate") else met)
     return weights
 
 
