@@ -3,7 +3,7 @@
 
 use crate::control::{Diagram, Memory};
 use crate::model::Model;
-use crate::steady::Pass;
+use crate::pass::Pass;
 
 /// Nearer than this part of its range an element is named.
 const NEAR: f64 = 0.02;

@@ -14,6 +14,7 @@ pub mod linearise;
 pub mod model;
 pub mod motion;
 pub mod newton_euler;
+pub mod pass;
 pub mod rates;
 pub mod simulate;
 pub mod spec;

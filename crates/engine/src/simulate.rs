@@ -11,6 +11,7 @@ use crate::integrate::Etdrk4;
 use crate::model::Model;
 use crate::rates::{Workspace, rates};
 use crate::spec::Spec;
+use crate::steady::{Steady, steady};
 use crate::wiring::Wiring;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -68,6 +69,20 @@ pub fn simulate(spec: &Spec, progress: &Progress) -> Result<TimeSeries, EngineEr
     run(&model, controller, progress)
 }
 
+/// States and held inputs at the start.
+fn begin(m: &Model, wired: Option<&mut Wired>) -> Result<(Vec<f64>, Vec<f64>), EngineError> {
+    if m.run.settled {
+        let wiring = wired.as_ref().map(|w| Wiring::of(m, w.controller.diagram().clone())).transpose()?;
+        let Steady { x, inputs, integrals, .. } = steady(m, wiring.as_ref(), None)?;
+        if let Some(wired) = wired {
+            wired.controller.start_with(&integrals);
+        }
+        return Ok((x, inputs));
+    }
+    let x = if m.run.equilibrium { equilibrium(m)? } else { design_state(m) };
+    Ok((x, m.inputs.clone()))
+}
+
 /// A controller with its wires: which channels it measures and which inputs it drives.
 struct Wired {
     controller: Controller,
@@ -83,9 +98,9 @@ struct Wired {
 /// No equilibrium, a controller wired to unknown channels, or a cancelled run.
 pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Result<TimeSeries, EngineError> {
     let start = cpu_time::ThreadTime::now();
-    let mut x = if m.run.equilibrium { equilibrium(m)? } else { design_state(m) };
     let channels = channels::list(m);
     let mut wired = controller.map(|c| Wired::new(m, c)).transpose()?;
+    let (mut x, mut held) = begin(m, wired.as_mut())?;
     let probes = wired.as_ref().map_or(0, |w| w.controller.probe_channels().len());
     let width = channels.len() + probes;
 
@@ -107,7 +122,7 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
 
     let excitation = Excitation::new(m)?;
     let moves = excitation.moves();
-    let (mut held, mut inputs) = (m.inputs.clone(), m.inputs.clone());
+    let mut inputs = held.clone();
     let mut w = Workspace::<f64>::new(m);
     let mut first = vec![0.0; x.len()];
     let mut row = vec![0.0; width];

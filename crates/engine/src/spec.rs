@@ -388,6 +388,9 @@ pub struct RunSpec {
     pub record_interval: f64,
     /// Start from the static equilibrium at `speed` (else from the design position).
     pub equilibrium: bool,
+    /// Start from the steady state with the controllers settled as well: their integrals, and their commands put out.
+    #[serde(default)]
+    pub settled: bool,
     /// Extra velocity of a body at the start: lateral \[m/s\] and yaw rate \[rad/s\], for stability runs and tests.
     #[serde(default)]
     pub kicks: Vec<KickSpec>,

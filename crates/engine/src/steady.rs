@@ -1,19 +1,14 @@
 //! Steady states: every body at rest relative to the others while the vehicle rolls on, controllers settled.
 //! Newton's method on the rates of the model itself with the exact Jacobian; the curve is entered step by step.
 
-use crate::channels;
-use crate::control::Memory;
 use crate::equilibrium::{design_state, settle_on_rails};
 use crate::error::{EngineError, Fault};
-use crate::inputs::nominal;
 use crate::model::{Course, Model};
-use crate::rates::{Workspace, rates};
+use crate::pass::{DIRECTIONS, Pass};
 use crate::wiring::Wiring;
 use klingel_physics::{Dual, Scalar};
 use nalgebra::{DMatrix, DVector};
 
-/// Directions of one dual pass.
-pub const DIRECTIONS: usize = 32;
 const MAX_ITERATIONS: usize = 60;
 /// A step that is this short and no longer gets shorter is rounding.
 const STALLED: f64 = 1e-7;
@@ -317,7 +312,7 @@ impl<'a> Problem<'a> {
         for (to, &i) in into.iter_mut().zip(&self.free) {
             *to = pass.dx[i];
             if m.bodies.iter().any(|b| b.state == i) {
-                *to = *to - pass.dx[s_ref];
+                *to -= pass.dx[s_ref];
             }
         }
         if let (Some(wiring), Some(memory)) = (self.wiring, &pass.memory) {
@@ -325,53 +320,5 @@ impl<'a> Problem<'a> {
             let rest = wanted.chain(wiring.diagram.unsettled(memory, &pass.integrals));
             into[self.free.len()..].iter_mut().zip(rest).for_each(|(to, value)| *to = value);
         }
-    }
-}
-
-/// One evaluation of the plant, its channels and the settled controllers.
-pub struct Pass<S> {
-    pub x: Vec<S>,
-    pub inputs: Vec<S>,
-    pub integrals: Vec<S>,
-    pub dx: Vec<S>,
-    pub row: Vec<S>,
-    pub memory: Option<Memory<S>>,
-    pub work: Workspace<S>,
-    measured: Vec<S>,
-}
-
-impl<S: Scalar> Pass<S> {
-    pub fn new(m: &Model, wiring: Option<&Wiring>) -> Self {
-        let n = m.state_count();
-        Self {
-            x: vec![S::zero(); n],
-            inputs: nominal(m),
-            integrals: vec![S::zero(); wiring.map_or(0, |w| w.diagram.integrators())],
-            dx: vec![S::zero(); n],
-            row: vec![S::zero(); channels::list(m).len()],
-            memory: wiring.map(|w| w.diagram.memory()),
-            work: Workspace::new(m),
-            measured: vec![S::zero(); wiring.map_or(0, |w| w.measured.len())],
-        }
-    }
-
-    /// Rates and channels, and the controllers where constant measurements would lead them.
-    ///
-    /// # Errors
-    /// A wheel that has left its rail; a controller that fails.
-    pub fn evaluate(&mut self, m: &Model, wiring: Option<&Wiring>) -> Result<(), Fault> {
-        rates(m, &self.x, &self.inputs, &mut self.work, &mut self.dx)?;
-        channels::fill(m, &self.x, &self.inputs, &self.work, &mut self.row);
-        if let (Some(wiring), Some(memory)) = (wiring, &mut self.memory) {
-            self.measured.iter_mut().zip(&wiring.measured).for_each(|(to, &i)| *to = self.row[i]);
-            let settled = wiring.diagram.settle(memory, &self.measured, &self.integrals);
-            settled.map_err(|e| Fault::Control(e.to_string()))?;
-        }
-        Ok(())
-    }
-
-    /// What the controllers measure.
-    pub fn measured(&self) -> &[S] {
-        &self.measured
     }
 }

@@ -37,7 +37,8 @@ def endless(scenario: Scenario, at: Quantity | None) -> tuple[float, float]:
 
 
 def steady_spec(scenario: Scenario, *, at: Quantity | None = None) -> Spec:
-    """The core's spec of a scenario on endless track, as it is at the arc length `at` of its own track.
+    """The core's spec of a scenario on endless track, as it is at the arc length `at` of its own track;
+    a run of it starts in the steady state, controllers settled.
 
     >>> from klingel import Scenario, Track, library
     >>> curve = Track.curve(radius="800 m", cant="160 mm")
@@ -48,9 +49,9 @@ def steady_spec(scenario: Scenario, *, at: Quantity | None = None) -> Spec:
     curvature, cant = endless(scenario, at)
     track = Track((Segment(ENDLESS, (curvature, curvature), (cant, cant)),))
     spec = lower(scenario.replace(track=track, duration=None))
-    start = spec["track"]["start"] + 0.5 * ENDLESS
     uniform = {"curvature": curvature, "cant": cant}
-    spec["track"] = {"uniform": uniform, "start": start, "cant_base": CANT_BASE}
+    spec["track"] = {"uniform": uniform, "start": spec["track"]["start"], "cant_base": CANT_BASE}
+    spec["run"]["settled"] = True
     return spec
 
 

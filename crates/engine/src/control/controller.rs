@@ -57,7 +57,7 @@ impl Controller {
         &self.diagram.probe_channels
     }
 
-    /// Goes to the state that constant measurements would lead to, integrals at zero: a run starts without a jolt.
+    /// Goes to the state that constant measurements would lead to: a run starts without a jolt.
     ///
     /// # Errors
     /// As `step`.
@@ -65,6 +65,11 @@ impl Controller {
         self.diagram.settle(&mut self.memory, measurements, &self.integrals)?;
         self.put_out();
         Ok(())
+    }
+
+    /// Integrals that `reset` begins with, one a PI block; zero if never given.
+    pub fn start_with(&mut self, integrals: &[f64]) {
+        self.integrals.copy_from_slice(integrals);
     }
 
     /// One sample: measurements in (SI, in the order of `measurement_names`), commands and probes out.

@@ -9,6 +9,7 @@ mod frames;
 mod gyroscope;
 mod hunting;
 mod limits;
+mod linear;
 mod sampling;
 mod scalars;
 mod wheelset;

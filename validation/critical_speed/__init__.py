@@ -1,0 +1,1 @@
+"""Linear critical speed of the passive coach over conicity."""
