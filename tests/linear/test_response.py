@@ -116,6 +116,8 @@ def test_kinds_move_the_rails_as_defined() -> None:
         frequency_response(beam(), irregularity(beam(), "alignment", F), "z", F)
     with pytest.raises(InputError, match="no irregularity among"):
         positions(chain([1.0], [1.0], [1.0]))
+    with pytest.raises(InputError, match="neither left nor right"):
+        irregularity(beam(), "vertical", F, behind={"middle": 0.0})
 
 
 def test_loop_gain_from_the_closed_loop() -> None:

@@ -13,7 +13,7 @@ from scipy.interpolate import PchipInterpolator
 
 from klingel.errors import InputError
 from klingel.linear.model import LinearModel, Signal
-from klingel.linear.response import all_outputs, input_weights, irregularity, points, positions
+from klingel.linear.response import all_outputs, input_weights, irregularity, points, positions, side
 from klingel.track.irregularity import RAILS, Course, Kind, Quality
 
 Real = NDArray[np.float64]
@@ -144,8 +144,8 @@ def excitations(
         moved: dict[str, Real] = {}
         for course in courses:
             value, slope = course.at(speed * time - distance)
-            for name, (left, right) in RAILS[course.kind].items():
-                share = left if wheel.endswith("left") else right
+            for name, shares in RAILS[course.kind].items():
+                share = shares[side(wheel)]
                 moved[name] = moved.get(name, 0.0) + share * (speed * slope if name.endswith("_rate") else value)
         entries += [
             {"input": f"{wheel}.{name}", "interval": interval, "values": values.tolist(), "joined": True}
