@@ -23,7 +23,7 @@ INTERVAL = 1e-3
 DURATION = 2.0
 STEP = 1e-4
 """So short that the scheme is exact for the wheelsets' bouncing on the contact springs near 180 Hz as well."""
-SIZES = {"V": 0.03, "N": 0.3, "m": 1e-8, "m/s": 1e-8, "1/m": 3e-11, "N m": 10.0}
+SIZES = {"V": 0.03, "N": 0.3, "m": 1e-8, "m/s": 1e-8, "1/m": 3e-11, "N m": 10.0, "rad": 1e-8}
 SPEED = 1e-3
 """Of the random inputs, and of the held speed [m/s]: so small that what is left of the nonlinearity stays below the
 limit, so large that rounding does as well (10 m of arc are known to 2e-15 m, and primary springs have 3e7 N/m)."""

@@ -79,7 +79,7 @@ def test_time_simulation_of_a_synthesised_course() -> None:
     x, z = np.zeros(6), np.zeros((n, 2))
     for i in range(n):
         z[i] = continuous.C @ x
-        x = both[:6, :6] @ x + both[:6, 6:] @ u[:, i]
+        x = both[:6, :6] @ x + both[:6, 6:] @ (0.5 * (u[:, i] + u[:, i + 1]))
     settled = z[n // 2 :]
     lines = np.arange(20, 1001) / L  # 150 m to 3 m
     found = random_response(continuous, quality, frequencies=lines * V)
@@ -110,6 +110,6 @@ def test_excitations_of_both_rails() -> None:
     line = synthesise(erri_b176("low").spectra["alignment"], length=500.0, seed=2)
     found = excitations([gauge, line], {"a.left": 0.0, "a.right": 0.0}, speed=20.0, duration=20.0, interval=0.01)
     values = {entry["input"]: np.array(entry["values"]) for entry in found}
-    s = 20.0 * (np.arange(2000) + 0.5) * 0.01
+    s = 20.0 * np.arange(2001) * 0.01
     np.testing.assert_allclose(values["a.right.rail_y"] - values["a.left.rail_y"], gauge.at(s)[0], atol=1e-15)
     np.testing.assert_allclose(values["a.right.rail_y_rate"] + values["a.left.rail_y_rate"], 40.0 * line.at(s)[1])

@@ -107,14 +107,17 @@ def test_a_sampled_model_meets_the_same_irregularity() -> None:
 def test_kinds_move_the_rails_as_defined() -> None:
     from klingel.track.irregularity import RAILS
 
-    assert RAILS["crosslevel"] == ("rail_z", -0.5, 0.5)  # positive lowers the right rail, z down, as cant does
-    assert RAILS["gauge"] == ("rail_y", -0.5, 0.5)  # positive widens
+    assert RAILS["crosslevel"]["rail_z"] == (-0.5, 0.5)  # positive lowers the right rail, z down, as cant does
+    assert RAILS["crosslevel"]["rail_roll"] == (1.0 / 1.5, 1.0 / 1.5)
+    assert RAILS["gauge"]["rail_y"] == (-0.5, 0.5)  # positive widens
     with pytest.raises(InputError, match="no irregularity"):
         irregularity(beam(), "twist", F)  # type: ignore[arg-type]
     with pytest.raises(InputError, match=r"rail_y.* is not of this model"):
         frequency_response(beam(), irregularity(beam(), "alignment", F), "z", F)
     with pytest.raises(InputError, match="no irregularity among"):
         positions(chain([1.0], [1.0], [1.0]))
+    with pytest.raises(InputError, match="neither left nor right"):
+        irregularity(beam(), "vertical", F, behind={"middle": 0.0})
 
 
 def test_loop_gain_from_the_closed_loop() -> None:

@@ -1,16 +1,29 @@
 //! What a run adds to the inputs beside its controllers: excitations over time and the ramp of the held speed.
-//! Everything is held for a step, so that a linear model with held inputs sees the same.
+//! What is held is held for a step, so that a linear model with held inputs sees the same.
 
 use crate::error::EngineError;
 use crate::inputs;
 use crate::model::{Course, Model};
 
-/// Values for one input, each held for some steps.
+/// Values for one input, some steps apart, each held or joined to the next by a straight line.
 #[derive(Clone, Debug)]
 struct Series {
     input: usize,
     every: usize,
     values: Vec<f64>,
+    joined: bool,
+}
+
+impl Series {
+    /// The value `share` of a step after step `k`.
+    fn at(&self, k: usize, share: f64) -> f64 {
+        let value = |i: usize| self.values.get(i).copied().unwrap_or(0.0);
+        let (i, past) = (k / self.every, k % self.every);
+        if !self.joined {
+            return value(i);
+        }
+        value(i) + (value(i + 1) - value(i)) * (past as f64 + share) / self.every as f64
+    }
 }
 
 /// Excitations of a run, by the number of the step.
@@ -49,21 +62,41 @@ impl Excitation {
             if let Some(bad) = e.values.iter().find(|v| !v.is_finite()) {
                 return Err(wrong(bad.to_string(), "give finite values"));
             }
-            series.push(Series { input, every: steps.round() as usize, values: e.values.clone() });
+            series.push(Series { input, every: steps.round() as usize, values: e.values.clone(), joined: e.joined });
         }
         let growth = m.hold.as_ref().map_or(0.0, |h| h.acceleration * m.run.step);
         let ramp = (growth != 0.0).then_some((m.places.speed, growth));
         Ok(Self { series, ramp })
     }
 
-    /// Writes the inputs of step `k` from those that are held by controllers.
-    pub fn apply(&self, k: usize, held: &[f64], inputs: &mut [f64]) {
+    /// Whether anything moves inside a step.
+    pub fn moves(&self) -> bool {
+        self.series.iter().any(|s| s.joined)
+    }
+
+    /// Writes the inputs `share` of a step after step `k` from those that are held by controllers.
+    pub fn apply(&self, k: usize, share: f64, held: &[f64], inputs: &mut [f64]) {
         inputs.copy_from_slice(held);
         for s in &self.series {
-            inputs[s.input] += s.values.get(k / s.every).copied().unwrap_or(0.0);
+            inputs[s.input] += s.at(k, share);
         }
         if let Some((speed, growth)) = self.ramp {
             inputs[speed] += k as f64 * growth;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Series;
+
+    #[test]
+    fn values_are_held_or_joined_and_nothing_follows() {
+        let held = Series { input: 0, every: 2, values: vec![1.0, 3.0], joined: false };
+        let joined = Series { joined: true, ..held.clone() };
+        let of =
+            |s: &Series| [(0, 0.0), (0, 0.5), (1, 0.0), (2, 0.0), (3, 0.5), (4, 0.0)].map(|(k, share)| s.at(k, share));
+        assert_eq!(of(&held), [1.0, 1.0, 1.0, 3.0, 3.0, 0.0]);
+        assert_eq!(of(&joined), [1.0, 1.5, 2.0, 3.0, 0.75, 0.0]);
     }
 }

@@ -7,8 +7,10 @@ use klingel_physics::Scalar;
 /// Name and unit of one input.
 pub type Input = (String, &'static str);
 
-/// Of each wheel, how its rail lies off its place \[m\] and how fast that changes as the wheel passes \[m/s\].
-pub const RAIL: [(&str, &str); 4] = [("rail_y", "m"), ("rail_z", "m"), ("rail_y_rate", "m/s"), ("rail_z_rate", "m/s")];
+/// Of each wheel, how its rail lies off its place \[m\], how fast that changes as the wheel passes \[m/s\], and how far
+/// it is rolled, with the sleepers, about its place \[rad\].
+pub const RAIL: [(&str, &str); 5] =
+    [("rail_y", "m"), ("rail_z", "m"), ("rail_y_rate", "m/s"), ("rail_z_rate", "m/s"), ("rail_roll", "rad")];
 
 const TRACK: [(&str, &str); 2] = [("track.curvature", "1/m"), ("track.cant", "m")];
 const WIND: [(&str, &str); 3] = [("wind.y", "N"), ("wind.z", "N"), ("wind.roll", "N m")];

@@ -121,6 +121,7 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
     }
 
     let excitation = Excitation::new(m)?;
+    let moves = excitation.moves();
     let mut inputs = held.clone();
     let mut w = Workspace::<f64>::new(m);
     let mut first = vec![0.0; x.len()];
@@ -133,7 +134,7 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
         if let (Some(c), true) = (&wired, sampled && k > 0) {
             c.drive(&mut held);
         }
-        excitation.apply(k, &held, &mut inputs);
+        excitation.apply(k, 0.0, &held, &mut inputs);
         let evaluated = rates(m, &x, &inputs, &mut w, &mut first).and_then(|()| {
             if k % record_every == 0 || sampled {
                 channels::fill(m, &x, &inputs, &w, &mut row);
@@ -155,7 +156,12 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
             if k == steps {
                 return Ok(());
             }
-            scheme.advance(&mut x, &first, |_, at, f| rates(m, at, &inputs, &mut w, f))?;
+            scheme.advance(&mut x, &first, |later, at, f| {
+                if moves {
+                    excitation.apply(k, later / step, &held, &mut inputs);
+                }
+                rates(m, at, &inputs, &mut w, f)
+            })?;
             finite(m, &x)
         });
         series.evaluations += 4;

@@ -399,7 +399,8 @@ pub struct RunSpec {
     pub excitations: Vec<ExcitationSpec>,
 }
 
-/// Values that are added to an input, each held for an interval; nothing after the last.
+/// Values that are added to an input, nothing after the last: each held for an interval, or one an interval apart and
+/// joined by straight lines, as rails go on between them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExcitationSpec {
@@ -408,6 +409,8 @@ pub struct ExcitationSpec {
     /// A multiple of the step \[s\].
     pub interval: f64,
     pub values: Vec<f64>,
+    #[serde(default)]
+    pub joined: bool,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -54,8 +54,9 @@ pub fn wheels<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>)
 }
 
 /// Forces of one wheel, and their moment about the body's centre of mass in T. `rail`: how it lies off its place, y and z,
-/// and how fast that changes at the wheel. Forces stay in the cross-section: the slope of an irregularity along the rail
-/// turns neither the normal force nor the slip, effects of second order for creepages and of N dz/ds along the track.
+/// how fast that changes at the wheel, and its roll about that place (the tape circle's, at the top of rail). Forces stay
+/// in the cross-section: the slope of an irregularity along the rail turns neither the normal force nor the slip, effects
+/// of second order for creepages and of N dz/ds along the track.
 fn wheel_on_rail<S: Scalar>(
     m: &Model,
     wheel: &Wheel,
@@ -71,10 +72,14 @@ fn wheel_on_rail<S: Scalar>(
     let v_T = body.v_T + body.R_TB.apply(body.w_B.cross(centre_B));
 
     // coordinates of the contact table, which is made for a right wheel
-    let shift = (p_T.y() - rail[0]) * sign - body.sin_roll * (sign * wheel.radius) - wheel.half_tape_distance;
-    let depth = p_T.z() - rail[1] + body.cos_roll * wheel.radius;
+    let (sin_rail, cos_rail) = rail[4].sin_cos();
+    let (y, z) = (p_T.y() - rail[0] - wheel.half_tape_distance * sign, p_T.z() - rail[1]);
+    let sin_roll = body.sin_roll * cos_rail - body.cos_roll * sin_rail;
+    let cos_roll = body.cos_roll * cos_rail + body.sin_roll * sin_rail;
+    let shift = (y * cos_rail + z * sin_rail - sin_roll * wheel.radius) * sign;
+    let depth = z * cos_rail - y * sin_rail + cos_roll * wheel.radius;
     let rail_rate_T = Vec3::new(S::zero(), rail[2], rail[3]);
-    let roll = body.sin_roll * sign;
+    let roll = sin_roll * sign;
     let yaw = body.yaw * sign;
     let patches =
         wheel.table.patches(shift, depth, roll, yaw).map_err(|outside| Fault::outside_table(&wheel.name, outside))?;
@@ -91,8 +96,9 @@ fn wheel_on_rail<S: Scalar>(
             let point_F = Vec3::new(ahead, patch.y_wheel * sign, patch.radius - drop);
             let point_T = body.R_TF.apply(point_F);
             let slip_T = v_T + body.R_TF.apply(w_F.cross(point_F));
-            let across = Vec3::new(S::zero(), cos, sin * -sign);
-            let into_rail = Vec3::new(S::zero(), sin * sign, cos);
+            let (sin_T, cos_T) = (sin * cos_rail - cos * sin_rail * sign, cos * cos_rail + sin * sin_rail * sign);
+            let across = Vec3::new(S::zero(), cos_T, sin_T * -sign);
+            let into_rail = Vec3::new(S::zero(), sin_T * sign, cos_T);
             let w_T = body.R_TF.apply(w_F);
 
             let damping = ((slip_T - rail_rate_T).dot(into_rail) * m.contact_dissipation + 1.0).positive();

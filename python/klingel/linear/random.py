@@ -13,7 +13,7 @@ from scipy.interpolate import PchipInterpolator
 
 from klingel.errors import InputError
 from klingel.linear.model import LinearModel, Signal
-from klingel.linear.response import all_outputs, input_weights, irregularity, points, positions
+from klingel.linear.response import all_outputs, input_weights, irregularity, points, positions, side
 from klingel.track.irregularity import RAILS, Course, Kind, Quality
 
 Real = NDArray[np.float64]
@@ -129,27 +129,26 @@ def _resonances(model: LinearModel, low: float, high: float) -> Real:
 def excitations(
     courses: Sequence[Course], behind: Mapping[str, float], *, speed: float, duration: float, interval: float
 ) -> list[dict[str, Any]]:
-    """Irregularities as `run.excitations` of a spec: every wheel's rail_y, rail_z and rates.
+    """Irregularities as `run.excitations` of a spec: what every wheel's rail does.
 
     courses: at most one of a kind; behind: how far each wheel runs behind the first one [m], which starts at s = 0 (see
-    `positions`); speed: [m/s]; duration: [s]; interval: over which values are held [s], a multiple of the step. A value
-    is that of the middle of its interval. Errors: InputError for two courses of a kind.
+    `positions`); speed: [m/s]; duration: [s]; interval: from value to value [s], a multiple of the step; straight lines
+    join them. Errors: InputError for two courses of a kind.
     """
     kinds = [course.kind for course in courses]
     if len(set(kinds)) < len(kinds):
         raise InputError.single("courses", kinds, "have a kind twice", remedy="give one of each kind")
-    time = (np.arange(round(duration / interval)) + 0.5) * interval
+    time = np.arange(round(duration / interval) + 1) * interval
     entries = []
     for wheel, distance in behind.items():
         moved: dict[str, Real] = {}
         for course in courses:
-            direction, left, right = RAILS[course.kind]
-            share = left if wheel.endswith("left") else right
             value, slope = course.at(speed * time - distance)
-            for name, term in ((direction, share * value), (f"{direction}_rate", share * speed * slope)):
-                moved[name] = moved.get(name, 0.0) + term
+            for name, shares in RAILS[course.kind].items():
+                share = shares[side(wheel)]
+                moved[name] = moved.get(name, 0.0) + share * (speed * slope if name.endswith("_rate") else value)
         entries += [
-            {"input": f"{wheel}.{name}", "interval": interval, "values": values.tolist()}
+            {"input": f"{wheel}.{name}", "interval": interval, "values": values.tolist(), "joined": True}
             for name, values in moved.items()
         ]
     return entries

@@ -208,6 +208,14 @@ def positions(model: LinearModel) -> dict[str, float]:
     return {wheel: first - place for wheel, place in at.items()}
 
 
+def side(wheel: str) -> int:
+    """0 for a left wheel, 1 for a right one, by the end of its name; errors: InputError for neither."""
+    for i, end in enumerate(("left", "right")):
+        if wheel.endswith(end):
+            return i
+    raise InputError.single("wheel", wheel, "is neither left nor right", remedy="end its name with .left or .right")
+
+
 def irregularity(
     model: LinearModel, kind: Kind, frequencies: ArrayLike, *, behind: Mapping[str, float] | None = None
 ) -> Combination:
@@ -222,13 +230,12 @@ def irregularity(
         raise InputError.single("kind", kind, "is no irregularity", remedy=nearest(kind, KINDS))
     points(model, frequencies)
     jw: Complex = np.asarray(2j * np.pi * np.atleast_1d(np.asarray(frequencies)), dtype=np.complex128)
-    direction, left, right = RAILS[kind]
     weights: dict[str, ArrayLike] = {}
     for wheel, distance in (positions(model) if behind is None else behind).items():
-        share = left if wheel.endswith("left") else right
-        met = share * np.exp(-jw * distance / model.speed)
-        weights[f"{wheel}.{direction}"] = met
-        weights[f"{wheel}.{direction}_rate"] = jw * met
+        met = np.exp(-jw * distance / model.speed)
+        for name, shares in RAILS[kind].items():
+            share = shares[side(wheel)]
+            weights[f"{wheel}.{name}"] = share * (jw * met if name.endswith("_rate") else met)
     return weights
 
 

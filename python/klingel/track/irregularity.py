@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from klingel.errors import InputError
 from klingel.records import Status
+from klingel.track import CANT_BASE
 from klingel.units import Quantity, to_si
 
 Array = NDArray[np.float64]
@@ -23,15 +24,20 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 """vertical: mean of both rails, down; alignment: mean, to the right; crosslevel: how much lower the right rail is, over
 the cant base; gauge: how much wider than nominal."""
 
-RAILS: Mapping[Kind, tuple[str, float, float]] = MappingProxyType(
+RAILS: Mapping[Kind, Mapping[str, tuple[float, float]]] = MappingProxyType(
     {
-        "vertical": ("rail_z", 1.0, 1.0),
-        "alignment": ("rail_y", 1.0, 1.0),
-        "crosslevel": ("rail_z", -0.5, 0.5),
-        "gauge": ("rail_y", -0.5, 0.5),
+        "vertical": {"rail_z": (1.0, 1.0), "rail_z_rate": (1.0, 1.0)},
+        "alignment": {"rail_y": (1.0, 1.0), "rail_y_rate": (1.0, 1.0)},
+        "crosslevel": {
+            "rail_z": (-0.5, 0.5),
+            "rail_z_rate": (-0.5, 0.5),
+            "rail_roll": (1.0 / CANT_BASE, 1.0 / CANT_BASE),
+        },
+        "gauge": {"rail_y": (-0.5, 0.5), "rail_y_rate": (-0.5, 0.5)},
     }
 )
-"""What one metre of a kind does: the direction it moves the rails in, and by how much the left and the right one."""
+"""What one metre of a kind does to the left and to the right rail, by the name of the core's input; of a rate, what one
+metre a second does. Crosslevel rolls the rails too, with the sleepers."""
 
 EDGE = 1e-9
 """Relative width of the ends of a valid range, for rounding."""
