@@ -79,7 +79,7 @@ class LinearModel:
     def reduced(self, order: int, *, scales: Mapping[str, float] | None = None) -> tuple[LinearModel, float]:
         """With `order` states by balanced truncation, and a bound of the error (`klingel.linear.reduce.reduced`).
 
-        scales: sizes of inputs and outputs by name, 1 for those not named. Errors: InputError for an order out of range.
+        scales: sizes of inputs and outputs by name, 1 for those not named. Errors: InputError for no such order.
         """
         from klingel.linear.reduce import reduced
 
