@@ -1,5 +1,6 @@
 """What a validation case is made of: rows of measured against reference, each with its tolerance.
-A case is a package `validation/<name>` with a module `case`: TITLE, ABOUT, run() and, if there is one, figure()."""
+A case is a package `validation/<name>` with a module `case`: TITLE, ABOUT, run() and, if there is one, figure();
+LONG = True keeps it out of the tests."""
 
 from __future__ import annotations
 

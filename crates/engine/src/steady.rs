@@ -70,7 +70,7 @@ pub fn steady(m: &Model, wiring: Option<&Wiring>, start: Option<&Steady>) -> Res
     let curved = matches!(m.track, Course::Uniform(t) if t.curvature != 0.0 || t.cant != 0.0);
     let mut state = problem.guess();
     if !curved {
-        return problem.newton(state);
+        return problem.newton(state.clone()).or_else(|_| problem.settled(state));
     }
     problem.share = 0.0;
     state = problem.newton(state)?;

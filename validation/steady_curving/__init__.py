@@ -1,0 +1,1 @@
+"""Steady curving against runs that have settled."""
