@@ -121,6 +121,7 @@ def test_falling_friction_is_that_of_the_slip_velocity(law: Any) -> None:
         ({"a": 0.0}, r"a = 0\.0: must be positive"),
         ({"b": [4e-3, -1.0]}, r"b\[1\] = -1\.0: must be positive"),
         ({"xi": math.nan}, "xi = 'nan': is not finite"),
+        ({"law": "table", "phi": -1e160}, r"phi = -1e\+160: is beyond 1e\+12: no wheel has it; give SI units"),
         ({"phi": [[0.0, math.inf]]}, r"phi\[0, 1\] = 'inf'"),
         ({"normal_force": -1.0}, "normal_force = -1.0: must not be negative"),
         ({"friction": -0.1}, "friction"),

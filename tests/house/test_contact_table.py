@@ -91,9 +91,11 @@ def test_the_core_refuses_parts_that_do_not_belong(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--elements", "40"], "elements = '40': is not 2 whole numbers; give them as 12x16"),
+        (["--elements", "40"], "elements = '40': is not 2 whole numbers of up to four digits; give them as 12x16"),
         (["--elements", "41x40"], "not an even number"),
-        (["--intervals", "12x16x20"], "is not 4 whole numbers"),
+        (["--intervals", "12x16x40"], "is not 4 whole numbers"),
+        (["--intervals", "12x16x400000000000000000000x22"], "is not 4 whole numbers of up to four digits"),
+        (["--intervals", "12x16x4000x22"], "4000 intervals are not an even number up to 100; take 100"),
         (["--poisson", "0.7"], "0.7 is outside 0 to 0.5"),
         (["--out", "{folder}"], "is a folder"),
         (["--out", "{folder}/none/table.bin"], "has no folder to be written to"),
@@ -163,14 +165,24 @@ def test_the_built_in_table_is_near_exact_theory(capsys: pytest.CaptureFixture[s
     table = creep_table()
     assert table.check_sum in said
     assert f"{table.elements[0]} x {table.elements[1]} elements" in said
+    assert "spin alone, a/b 25: differences RMS" in said
 
 
-def test_a_table_too_far_from_exact_theory_fails(monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = compare_with_exact(2)
-    rows["error"] = [0.0, 0.03]
-    monkeypatch.setattr(table_check, "compare_with_exact", lambda _: rows)
+@pytest.mark.parametrize("compared", ["compare_with_exact", "compare_pure_spin"])
+def test_a_table_too_far_from_exact_theory_fails(monkeypatch: pytest.MonkeyPatch, compared: str) -> None:
+    for name in ("compare_with_exact", "compare_pure_spin"):
+        rows = compare_with_exact(2)
+        rows["error"] = [0.0, 0.03 if name == compared else 0.001]
+        monkeypatch.setattr(table_check, name, lambda *_, rows=rows: rows)
     with pytest.raises(SimulationError, match=r"differs from exact theory by 3.0 % of mu N, allowed are 2 %"):
         table_check.check_built_in(print)
+
+
+def test_the_check_refuses_options_of_making(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.run(["contact-table", "--check", "--elements", "20x20", "--poisson", "0.3"]) == 2
+    said = capsys.readouterr().err
+    assert "elements = '20x20': does not go with --check; leave it out" in said
+    assert "poisson" in said
 
 
 def test_the_doctor_knows_the_table(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

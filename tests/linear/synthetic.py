@@ -1,4 +1,4 @@
-"""Linear models made by hand of a lowered vehicle: its springs and dampers, linear creep on coned wheels, hard contacts.
+"""Linear models made by hand of a lowered vehicle: springs and dampers, linear creep on coned wheels, hard contacts.
 Enough like the real thing to try modes and loci on without the core."""
 
 from typing import Any
@@ -63,7 +63,8 @@ def model_of(spec: dict[str, Any], *, conicity: float = 0.1) -> LinearModel:
         A[own, own] -= m["stiffness"] / m["damping"]
     V = spec["speed"]
     for name in sorted({w["body"] for w in spec.get("wheels", ())}):
-        s, y, z, roll, yaw, vx, vy, vz, wx, wz = (place[f"{name}.{c}"] for c in "s y z roll yaw vx vy vz wx wz".split())
+        y, z, roll, yaw = (place[f"{name}.{c}"] for c in ("y", "z", "roll", "yaw"))
+        vx, vy, vz, wx, wz = (place[f"{name}.{c}"] for c in ("vx", "vy", "vz", "wx", "wz"))
         spin = place[f"{name}.spin.spin_speed"]
         force[vz, z] -= 2.0 * CONTACT
         force[wx, roll] -= 2.0 * CONTACT * HALF_TAPES**2

@@ -107,8 +107,8 @@ def test_a_kink_is_named() -> None:
     from klingel.linear import steady_state
 
     track = kl.Track.curve(radius="1200 m", cant="160 mm", transition="285 m", arc="300 m")
-    near = steady_state(scenario("manchester_coach", None, track, "221.4 km/h"), at="600 m")
-    assert any("lateral_stop is near a corner" in text or "about to open" in text for text in near.warnings)
+    near = steady_state(scenario("manchester_coach", None, track, "223.2 km/h"), at="600 m")
+    assert any("lateral_stop is near a corner" in text for text in near.warnings)
     assert steady_state(scenario("manchester_coach", None, STRAIGHT)).warnings == ()
 
 

@@ -24,10 +24,9 @@ Apache-2.0), full theory, for a/b 0.5 and 1; for the others our own solver of th
 (root mean square) of CONTACT on all rows of the first two; every fifth of them, all kinds, is solved here. Figures are
 root mean squares of |dF| over mu Fn. Plain FASTSIM has its largest errors where creepage and spin act together: there
 three flexibilities give the traction the wrong direction, the more so the more they differ (a/b 0.2). A coarse grid
-hides part of the error of the method, so 40 x 40 stands beside. The table has its largest errors at a/b 10 and 20,
-where the force of pure spin has a sharp peak; the limits of the largest error are for a/b 0.2 to 5. The traction curves
-are CONTACT's example of a locomotive's wheel: its own FASTSIM counts the first half element of a strip as a whole one,
-which makes it 3 % stiffer at rest.
+hides part of the error of the method, so 40 x 40 stands beside. The table has its largest error at a/b 0.1, far into
+full sliding under spin, where the grid itself makes steps. The traction curves are CONTACT's example of a locomotive's
+wheel: its own FASTSIM counts the first half element of a strip as a whole one, which makes it 3 % stiffer at rest.
 """
 
 ASKED, BEYOND = (0.2, 0.5, 1.0, 2.0, 5.0), (0.1, 10.0, 20.0)
@@ -80,8 +79,7 @@ def _table(rows: pd.DataFrame) -> Iterator[Row]:
     for ratio in sorted((*ASKED, *BEYOND)):
         error = force_error(rows[rows["aob"] == ratio], "table")
         yield Row.at_most(f"table, a/b {ratio:g}", "full theory", rms(error), 0.005)
-        most = (f"table, a/b {ratio:g}, largest", "full theory", float(error.max()))
-        yield Row.at_most(*most, 0.02) if ratio in ASKED else Row.shown(*most)
+        yield Row.at_most(f"table, a/b {ratio:g}, largest", "full theory", float(error.max()), 0.02)
     moment = computed(rows, "table")[2] - rows["mz_rel_c"]
     yield Row.shown("table, moment over mu Fn sqrt(ab)", "full theory", rms(moment.to_numpy()))
 

@@ -12,6 +12,7 @@ import pandas as pd
 from validation.common import Row
 from validation.contact_creep.rows import force_error, references
 from validation.creep_laws.case import bands
+from validation.creep_table import spin
 from validation.creep_table.points import COUNT, NAMES, points
 from validation.exact_theory.scaled import Values, forces, off, off_moment, resolved, rms
 
@@ -24,6 +25,8 @@ The {COUNT} random creepages of the case of the laws, now for the table alone: l
 directions of the scaled creepage uniform, its size from rest to full sliding (seed and all in exact.csv). Reference:
 the solver that the table is made with, on its 40 x 40 elements, some points solved again here; so this is the error of
 the table itself, and the solver's distance from the limit of fine grids comes on top (case of grid convergence).
+{spin.COUNT} more creepages have the angle of spin above the other two uniform, so that half of them have more spin than
+creepage, and {len(spin.LINES)} lines of spin alone go from |v| 0.3 to 150 (spin.csv): there lie the sharpest peaks.
 CONTACT's rows are those of the case of creep forces. Limits are what was asked of the table: 0.5 % of mu N (root mean
 square) and for a/b 0.05 to 25, where wheels on rails are, 2 % (largest); that no force exceeds mu N, that mirror images
 agree to the last bit. Moments are over mu N sqrt(ab).
@@ -45,6 +48,7 @@ def run() -> Iterator[Row]:
     asked = ((rows["aob"] >= ASKED[0]) & (rows["aob"] <= ASKED[1])).to_numpy()
     yield Row.at_most("forces, a/b 0.05 to 25", "exact 40 x 40", rms(error[asked]), RMS_LIMIT)
     yield Row.at_most("forces, a/b 0.05 to 25, largest", "exact 40 x 40", float(error[asked].max()), MOST)
+    yield from _spin()
     for name, inside in bands(rows).items():
         yield Row.at_most(f"forces, a/b {name}", "exact 40 x 40", rms(error[inside]), RMS_LIMIT)
         yield Row.shown(f"forces, a/b {name}, largest", "exact 40 x 40", float(error[inside].max()))
@@ -62,6 +66,21 @@ def run() -> Iterator[Row]:
     error = force_error(known, "table")
     yield Row.at_most("forces, 212 rows at a/b 0.5 and 1", "CONTACT 40 x 40", rms(error), RMS_LIMIT)
     yield Row.at_most("forces, the same, largest", "CONTACT 40 x 40", float(error.max()), MOST)
+
+
+def _spin() -> Iterator[Row]:
+    """Where spin leads, and where it is alone."""
+    random, lines = spin.points()
+    solved = pd.concat([random.iloc[::SHARE], lines.iloc[::SHARE]])
+    yield Row.at_most("some points with spin solved again", "spin.csv", resolved(solved), 2e-5)
+    error, asked = off(random, "table"), random["aob"].between(*ASKED).to_numpy()
+    yield Row.at_most("forces where spin leads, a/b 0.05 to 25", "exact 40 x 40", rms(error[asked]), RMS_LIMIT)
+    yield Row.at_most(
+        "forces where spin leads, a/b 0.05 to 25, largest", "exact 40 x 40", float(error[asked].max()), MOST
+    )
+    yield Row.shown("forces where spin leads, all, largest", "exact 40 x 40", float(error.max()))
+    for ratio, line in lines.groupby("aob"):
+        yield Row.at_most(f"spin alone, a/b {ratio:g}, largest", "exact 40 x 40", float(off(line, "table").max()), MOST)
 
 
 def _table(rows: pd.DataFrame, turn: tuple[int, int, int] = (1, 1, 1)) -> tuple[Values, Values, Values]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from klingel.plot.style import INK, PALE, styled
+from validation.creep_table import spin
 from validation.creep_table.case import MOST, RMS_LIMIT
 from validation.creep_table.points import ENDS, points
 from validation.exact_theory.scaled import HALF, Values, off, off_moment, rms
@@ -43,17 +44,20 @@ def drawn() -> Figure:
         kinds.set_xticks([0, 15, 30, 45, 60, 90])
         kinds.set_xlabel("0: creepage only,  90: spin only  [°]")
         mesh = _map(ratios, RATIOS, ratio, place, error)
-        figure.colorbar(mesh, ax=[kinds, ratios], label="largest |ΔF|/(μN)  [%]", pad=0.01)
+        figure.colorbar(mesh, ax=[kinds, ratios], label="largest |ΔF|/(μN)  [%]", pad=0.01, extend="max")
         _spread(force, ratio, error, "|ΔF|/(μN)  [%]")
-        force.axhline(100 * RMS_LIMIT, color=INK, lw=0.8, ls=(0, (1, 1.5)))
-        force.axhline(100 * MOST, color=INK, lw=0.8, ls=(0, (5, 1.8)), label="limits")
+        _, lines = spin.points()
+        alone = lines.assign(error=100 * off(lines, "table")).groupby("aob")["error"].max()
+        force.semilogy(alone.index, alone, "D", color=INK, mfc="none", ls="", ms=3.5, label="largest, spin alone")
+        force.axhline(100 * MOST, color=INK, lw=0.8, ls=(0, (5, 1.8)), label="limit of the largest")
+        force.axhline(100 * RMS_LIMIT, color=INK, lw=0.8, ls=(0, (1, 1.5)), label="limit of the mean square")
         _spread(turning, ratio, moment, "|ΔMz|/(μN c)  [%]")
         for axis in (ratios, force, turning):
             axis.set_xscale("log")
             axis.set_xticks([1 / 36, 0.1, 0.3, 1, 3, 10, 36], ["1/36", "0.1", "0.3", "1", "3", "10", "36"])
             axis.minorticks_off()
             axis.set_xlabel("a/b")
-        force.legend(loc="lower center", ncol=2, fontsize=7, handlelength=1.6, columnspacing=0.8)
+        force.legend(loc="lower right", ncol=2, fontsize=6.2, handlelength=1.5, columnspacing=0.7, borderaxespad=0.2)
     return figure
 
 
@@ -82,5 +86,5 @@ def _spread(axis: Axes, ratio: Values, error: Values, label: str) -> None:
     ninety = [np.quantile(part, 0.95) for part in parts]
     axis.semilogy(middles, ninety, "s", color=PALE, ls=(0, (4, 1.4, 1, 1.4)), ms=3.5, label="95 of 100 are below")
     axis.semilogy(middles, [rms(part) for part in parts], "o", color="#0072B2", ls="-", ms=4, label="root mean square")
-    axis.set_ylim(0.01, 10.0)
+    axis.set_ylim(0.005, 10.0)
     axis.set_ylabel(label)

@@ -115,29 +115,31 @@ def profile(
 
 @app.command("contact-table")
 def contact_table(
-    out: Annotated[Path, typer.Option(help="File to write.")] = Path("creep_table.bin"),
+    out: Annotated[Path | None, typer.Option(help="File to write.", show_default="creep_table.bin")] = None,
     work: Annotated[
         Path | None, typer.Option(help="Folder for finished parts; default: in the user's cache folder.")
     ] = None,
-    elements: Annotated[str, typer.Option(help="Of a patch, along x across.")] = "40x40",
+    elements: Annotated[str | None, typer.Option(help="Of a patch, along x across.", show_default="40x40")] = None,
     intervals: Annotated[
-        str | None, typer.Option(help="Of three creepages and of the semi-axes' ratio, such as 12x16x20x22.")
+        str | None, typer.Option(help="Of three creepages and of the semi-axes' ratio, such as 12x16x40x22.")
     ] = None,
-    poisson: Annotated[float, typer.Option(help="Poisson's ratio of both bodies.")] = 0.28,
-    check: Annotated[bool, typer.Option("--check", help="Check the built-in table instead.")] = False,
+    poisson: Annotated[float | None, typer.Option(help="Poisson's ratio of both bodies.", show_default="0.28")] = None,
+    check: Annotated[bool, typer.Option("--check", help="Check the built-in table instead, as it was made.")] = False,
 ) -> None:
     """Make the table of creep forces with exact theory, on all cores; another start goes on where the last one ended.
 
     In a checkout, `--out crates/physics/data/creep_table.bin` and `make build` put it into the package.
     """
     if check:
-        from klingel.cli.table_check import check_built_in
+        from klingel.cli.table_check import check_built_in, refuse
 
+        refuse({"out": out, "work": work, "elements": elements, "intervals": intervals, "poisson": poisson})
         check_built_in(typer.echo)
     else:
         from klingel.cli.contact_table import Shape, make
 
-        make(out, work, Shape(poisson, elements, intervals), typer.echo)
+        shape = Shape(0.28 if poisson is None else poisson, elements or "40x40", intervals)
+        make(out or Path("creep_table.bin"), work, shape, typer.echo)
 
 
 @app.command()

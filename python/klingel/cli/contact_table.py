@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Say = Callable[[str], object]
 
 REMEDY = "the same command goes on with them"
-EXAMPLE = ("12", "16", "20", "22")
+EXAMPLE = ("12", "16", "40", "22")
 HOUR = 3600.0
 
 
@@ -137,7 +137,8 @@ def _numbers(key: str, text: str, count: int) -> list[int]:
     >>> _numbers("elements", "40x40", 2)
     [40, 40]
     """
-    if not re.fullmatch(r"\d+" + r"x\d+" * (count - 1), text):
+    number = r"[0-9]{1,4}"
+    if not re.fullmatch("x".join([number] * count), text):
         remedy = f"give them as {'x'.join(EXAMPLE[:count])}"
-        raise InputError.single(key, text, f"is not {count} whole numbers", remedy=remedy)
+        raise InputError.single(key, text, f"is not {count} whole numbers of up to four digits", remedy=remedy)
     return [int(n) for n in text.split("x")]

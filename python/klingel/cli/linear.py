@@ -105,7 +105,10 @@ def rootlocus(
     out: Annotated[Path, typer.Option(help="Picture (.png, .svg).", dir_okay=False)] = Path("rootlocus.png"),
     table: TableFile = None,
 ) -> None:
-    """Eigenvalues over the speed, the conicity, the friction or any number of vehicle and controllers."""
+    """Eigenvalues over the speed, the conicity, the friction or any number of vehicle and controllers.
+
+    Every new conicity compiles its contact table first, which takes some seconds and is kept.
+    """
     _check(out, "picture")
     made = scenario_of(
         scenario, vehicle, speed or _speed_that_varies(scenario, parameter, start), control, settings, without
@@ -121,8 +124,12 @@ def rootlocus(
     unit = parameters.unit(made, parameter)
     values = np.linspace(to_si(start, unit, key="--from"), to_si(end, unit, key="--to"), points)
     begun = time.perf_counter()
-    with _working(f"{points} values of {parameter}"):
-        locus = root_locus(made, parameter, values, at=at, controllers=not plant)
+    with _working(f"{points} values of {parameter}") as status:
+
+        def tell(done: int, count: int) -> None:
+            status.update(f"{done} of {count} values of {parameter}")
+
+        locus = root_locus(made, parameter, values, at=at, controllers=not plant, step=tell)
     seconds = time.perf_counter() - begun
     where = _where(made, at, plant, speed=parameter != "speed")
     title = f"{made.vehicle.name} over {parameter}" + (f", {where}" if where else "")
@@ -198,7 +205,8 @@ def critical_speed(
     import pandas as pd
 
     _print(pd.DataFrame(list(found.items()), columns=["what", "found"]), {"what": "", "found": ""}, title=title)
-    _write(critical.table() if cycles is None else pd.concat([critical.table(), cycles.table()]), table)
+    rows = critical.table() if cycles is None else pd.concat([critical.table(), cycles.table()])
+    _write(rows.sort_values("speed"), table)
     typer.echo(out)
 
 

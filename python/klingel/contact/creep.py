@@ -203,6 +203,8 @@ def _tuple(value: Any, length: int, *kinds: type) -> bool:
 POSITIVE = ("a", "b", "shear_modulus")
 NOT_NEGATIVE = ("normal_force", "friction", "speed", "poisson")
 SCALAR = ("shear_modulus", "poisson")
+LARGEST = 1e12
+"""Of every number: far beyond steel's stiffness; powers of much larger ones overflow in the laws."""
 
 
 def _number_problems(key: str, values: Values) -> Iterator[Problem]:
@@ -211,6 +213,8 @@ def _number_problems(key: str, values: Values) -> Iterator[Problem]:
         yield Problem(key, values.shape, "is an array", remedy="give one number: call once for each material")
         return
     bad, message = ~np.isfinite(values), "is not finite"
+    if not bad.any():
+        bad, message = np.abs(values) > LARGEST, f"is beyond {LARGEST:g}: no wheel has it; give SI units"
     if not bad.any() and key in POSITIVE:
         bad, message = values <= 0.0, "must be positive"
     elif not bad.any() and key in NOT_NEGATIVE:

@@ -96,8 +96,9 @@ def critical_speed(
             step(done, points)
     s = np.array(swept)
     outcome, edge = _edge(speeds, s.real, lambda speed: least(speed).real)
-    found = modes(scenario.replace(speed=edge), at=at, controllers=controllers)
-    deciding = least(edge)
+    there = sweep(scenario.replace(speed=edge))
+    found = modes(there.model, there.spec, plant=there.plant)
+    deciding = least_stable(there.model)
     critical = min(found, key=lambda mode: abs(mode.eigenvalue - deciding))
     return CriticalSpeed(
         outcome,

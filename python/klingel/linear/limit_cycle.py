@@ -1,5 +1,5 @@
 """Nonlinear critical speed: the lowest speed at which a hunting vehicle does not come to rest by itself.
-A run that slows down from full hunting shows the limit cycle over speed; runs at constant speed confirm its end."""
+A run that slows down from full hunting shows the limit cycle over speed; runs that keep a speed confirm its end."""
 
 from __future__ import annotations
 
@@ -36,8 +36,17 @@ AT_REST = 0.1e-3
 KICK = 0.2
 """Every run starts with the whole vehicle moving to the right [m/s], into the flanges."""
 
-SETTLES = 20.0
-"""Duration of the runs at constant speed [s]."""
+ENTERS = 4.0
+"""Time that hunting has to build up before a run slows down to its speed [s]."""
+
+SLOWS = 1.0
+"""Deceleration to that speed [m/s2]."""
+
+SETTLES = 15.0
+"""Time at that speed [s]."""
+
+FIRMER = 5.0
+"""How many times faster the speed is held than in other runs: 0.5 Hz, so that the speeds are those asked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,9 +54,9 @@ class Bifurcation:
     """How far a vehicle hunts over its speed.
 
     linear: the linear critical speed; speeds (n) [m/s], amplitudes (n) [m]: largest lateral amplitude of a wheelset in
-    the course of the run that slows down; held: speeds of the runs at constant speed [m/s] and the amplitudes that they
-    end with [m], zero for those that come to rest; speed: nonlinear critical speed [m/s], the lowest at which hunting
-    goes on for ever, None if it does at none; resolution: of that speed [m/s].
+    the course of the run that slows down; held: speeds of the runs that then keep their speed [m/s] and the amplitudes
+    that they end with [m], zero for those that come to rest; speed: nonlinear critical speed [m/s], the lowest at which
+    hunting goes on for ever, None if it does at none; resolution: of that speed [m/s].
     """
 
     linear: CriticalSpeed
@@ -98,26 +107,54 @@ def bifurcation(
 
     def hunts(speed: float) -> bool:
         said(f"a run at {speed:.1f} m/s")
-        held.append((speed, sustained(run_at(scenario, speed, duration=SETTLES))))
+        held.append((speed, sustained(run_down(scenario, begin, speed))))
         return held[-1][1] > 0.0
 
     edge = _lowest_cycle(hunts, _dies(speeds, amplitudes), begin, end, fine)
     return Bifurcation(linear, speeds, amplitudes, tuple(sorted(held)), edge, fine)
 
 
-def run_at(scenario: Scenario, speed: float, *, duration: float, acceleration: float = 0.0) -> xr.Dataset:
-    """A run on endless straight track from a kick to the right; errors: SimulationError if it ends early."""
+def run_at(
+    scenario: Scenario, speed: float, *, duration: float, acceleration: float = 0.0, kick: float = KICK
+) -> xr.Dataset:
+    """A run on endless straight track from a kick to the right [m/s]; errors: SimulationError if it ends early."""
+    spec = _spec(scenario, speed, duration, kick)
+    spec["hold"]["acceleration"] = acceleration
+    return _completed(spec)
+
+
+def run_down(scenario: Scenario, begin: float, speed: float) -> xr.Dataset:
+    """The last seconds of a run that starts hunting at `begin` and is slowed down to a speed, which it then keeps.
+
+    So it starts in the limit cycle, if there is one: a kick at that speed may be too small for it, or too large.
+    """
+    slowing = ENTERS + (begin - speed) / SLOWS
+    spec = _spec(scenario, begin, slowing + SETTLES, KICK)
+    interval = round(0.1 / scenario.step) * scenario.step
+    t = interval * np.arange(math.ceil(spec["run"]["duration"] / interval) + 1)
+    values = np.clip(SLOWS * (ENTERS - t), speed - begin, 0.0)
+    spec["run"]["excitations"] = [{"input": "hold.speed", "interval": interval, "values": values.tolist()}]
+    run = _completed(spec)
+    return run.isel(time=slice(round(slowing / RECORD), None))
+
+
+def _spec(scenario: Scenario, speed: float, duration: float, kick: float) -> Spec:
+    """On endless straight track, the speed held firmly, all bodies kicked to the right."""
     spec = straight(lower(scenario.replace(speed=speed)))
+    hold = spec["hold"]
+    hold |= {"proportional": FIRMER * hold["proportional"], "integral": FIRMER**2 * hold["integral"]}
     spec["run"] |= {
         "duration": math.ceil(duration / RECORD) * RECORD,
         "record_interval": RECORD,
-        "kicks": [{"body": body["name"], "velocity": [0.0, KICK, 0.0]} for body in spec["bodies"]],
+        "kicks": [{"body": body["name"], "velocity": [0.0, kick, 0.0]} for body in spec["bodies"]],
     }
-    if spec["hold"] is not None:
-        spec["hold"]["acceleration"] = acceleration
+    return spec
+
+
+def _completed(spec: Spec) -> xr.Dataset:
     result = simulate_spec(spec)
     if result.attrs["outcome"] != COMPLETED:
-        raise SimulationError(f"{scenario.vehicle.name} from {speed:.1f} m/s: {result.attrs['outcome']}; begin slower")
+        raise SimulationError(f"{spec['name']} from {spec['speed']:.1f} m/s: {result.attrs['outcome']}; begin slower")
     return result
 
 
@@ -172,9 +209,9 @@ def _begin(linear: CriticalSpeed, highest: Quantity | None, end: float) -> float
 
 
 def _dies(speeds: Values, amplitudes: Values) -> float:
-    """Speed at which the run that slows down comes to rest; its last one if it never does."""
-    alive = np.flatnonzero(amplitudes > AT_REST)
-    return float(speeds[alive[-1]]) if alive.size else float(speeds[0])
+    """Speed at which the run that slows down has lost half of its amplitude; its last one if it never does."""
+    alive = np.flatnonzero(amplitudes > 0.5 * amplitudes.max())
+    return float(speeds[alive[-1]])
 
 
 def _lowest_cycle(

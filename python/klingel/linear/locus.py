@@ -16,7 +16,7 @@ from klingel.linear import parameters
 from klingel.linear.blocks import Complex, eigen, lives
 from klingel.linear.model import LinearModel
 from klingel.linear.modes import STILL, Mode, modes
-from klingel.linear.sweep import Sweep
+from klingel.linear.sweep import Linearised, Sweep
 from klingel.scenario import Scenario
 from klingel.units import Quantity, to_si
 
@@ -92,66 +92,78 @@ def root_locus(
         raise InputError.single("values", [], "holds no value", remedy=f"give values of {parameter} [{unit}]")
     changed = [parameters.replace(scenario, parameter, float(number)) for number in numbers]
     sweep = Sweep(at=at, controllers=controllers)
-    models = (sweep(each).model for each in changed)
-    followed = np.array(list(_branches(_told(models, len(changed), step)))).T
     middle = len(changed) // 2
-    names = _names(followed[:, middle], modes(changed[middle], at=at, controllers=controllers))
-    upper, kept = _upper(followed)
+    kept: list[Linearised] = []
+
+    def models() -> Iterator[LinearModel]:
+        for k, each in enumerate(changed):
+            made = sweep(each)
+            if k == middle:
+                kept.append(made)
+            yield made.model
+            if step is not None:
+                step(k + 1, len(changed))
+
+    followed = follow(models())
+    names = _names(followed, middle, modes(kept[0].model, kept[0].spec, plant=kept[0].plant))
     speed = None if parameter == "speed" else scenario.speed
-    return RootLocus(parameter, unit, numbers, upper.T, tuple(np.array(names, dtype=object)[kept]), speed)
+    return RootLocus(parameter, unit, numbers, followed.T, names, speed)
 
 
-def _told(models: Iterable[LinearModel], count: int, step: Callable[[int, int], None] | None) -> Iterator[LinearModel]:
-    for done, model in enumerate(models, start=1):
-        yield model
-        if step is not None:
-            step(done, count)
-
-
-def _names(values: Complex, found: Sequence[Mode]) -> list[str]:
-    """Of every branch the name of the mode with its eigenvalue, or its conjugate."""
+def _names(branches: Complex, middle: int, found: Sequence[Mode]) -> tuple[str, ...]:
+    """Of every branch the name of the mode with its eigenvalue at the middle, or where it is next to it."""
     known = np.array([mode.eigenvalue for mode in found])
-    upper = values.real + 1j * np.abs(values.imag)
-    nearest = np.abs(upper[:, None] - known[None, :]).argmin(axis=1)
-    return [found[i].name for i in nearest]
+    there = np.isfinite(branches)
+    nearest = np.abs(np.where(there, np.arange(branches.shape[1]) - middle, np.inf)).argmin(axis=1)
+    values = branches[np.arange(len(branches)), nearest]
+    return tuple(found[i].name for i in np.abs(values[:, None] - known[None, :]).argmin(axis=1))
 
 
 def follow(models: Iterable[LinearModel]) -> Complex:
     """Eigenvalues of neighbouring models as branches (n, k): each is followed by its size and by its shape.
 
-    Of conjugate pairs the lower one is NaN; what starts as bare memory of controllers is no branch.
+    Of conjugate pairs the upper one is followed. Where a pair turns into two real eigenvalues a branch begins, where
+    two become a pair one ends; it is NaN elsewhere. The bare memory of controllers is left out.
     """
-    return _upper(np.array(list(_branches(models))).T)[0]
-
-
-def _branches(models: Iterable[LinearModel]) -> Iterator[Complex]:
-    """Eigenvalues (n) of one model after the other, in the order of the first."""
+    steps: list[tuple[NDArray[np.intp], Complex]] = []
     now: _Seen | None = None
-    before: Complex | None = None
     weights = np.ones(1)
+    count = 0
     for model in models:
         found = _seen(model)
         if now is None:
             weights = 1.0 / np.maximum(np.sqrt(np.mean(np.abs(found.shapes) ** 2, axis=1)), 1e-300)
-            own = lives(found.roots, model.sample_time)
-            now = _Seen(found.roots[own], _scaled(found.shapes[:, own], weights))
-        else:
-            found = found._replace(shapes=_scaled(found.shapes, weights))
-            ahead = now.roots if before is None else 2.0 * now.roots - before
-            order = _matched(now, ahead, found)
-            before, now = now.roots, _Seen(found.roots[order], found.shapes[:, order])
-        yield now.roots
+        found = found._replace(shapes=_scaled(found.shapes, weights))
+        branch = np.full(len(found.roots), -1)
+        if now is not None:
+            old, new = _matched(now, found)
+            branch[new] = now.branch[old]
+            found.ahead[new] = 2.0 * found.roots[new] - now.roots[old]
+        fresh = np.flatnonzero(branch < 0)
+        branch[fresh] = count + np.arange(len(fresh))
+        count += len(fresh)
+        now = found._replace(branch=branch)
+        steps.append((branch, found.roots))
+    branches = np.full((count, len(steps)), np.nan, dtype=np.complex128)
+    for k, (branch, roots) in enumerate(steps):
+        branches[branch, k] = roots
+    return branches
 
 
 class _Seen(NamedTuple):
+    """Eigenvalues, shapes as columns, where a straight line leads next, and the branches that they are on."""
+
     roots: Complex
     shapes: Complex
+    ahead: Complex
+    branch: NDArray[np.intp]
 
 
 def _seen(model: LinearModel) -> _Seen:
     values, _, right = eigen(model, left=False)
-    finite = np.isfinite(values)
-    return _Seen(values[finite], right[:, finite])
+    upper = lives(values, model.sample_time) & (values.imag >= 0.0)
+    roots = values[upper]
+    return _Seen(roots, right[:, upper], roots.copy(), np.zeros(0, dtype=np.intp))
 
 
 def _scaled(shapes: Complex, weights: NDArray[np.float64]) -> Complex:
@@ -159,18 +171,11 @@ def _scaled(shapes: Complex, weights: NDArray[np.float64]) -> Complex:
     return np.asarray(weighted / np.linalg.norm(weighted, axis=0))
 
 
-def _matched(now: _Seen, ahead: Complex, found: _Seen) -> NDArray[np.intp]:
-    """For every branch the new eigenvalue that continues it; `ahead`: where a straight line would lead."""
+def _matched(now: _Seen, found: _Seen) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Which old eigenvalue each new one continues: places in `now` and in `found`."""
     size = np.abs(now.roots)[:, None] + np.abs(found.roots)[None, :] + 1.0
     distance = np.abs(now.roots[:, None] - found.roots[None, :])
-    off_line = np.abs(ahead[:, None] - found.roots[None, :])
+    off_line = np.abs(now.ahead[:, None] - found.roots[None, :])
     unlike = 1.0 - np.abs(np.conj(now.shapes.T) @ found.shapes) ** 2
-    rows, columns = linear_sum_assignment(np.minimum(distance, off_line) / size + LIKENESS * unlike)
-    return np.asarray(columns[np.argsort(rows)])
-
-
-def _upper(branches: Complex) -> tuple[Complex, NDArray[np.bool_]]:
-    """Without the lower halves of conjugate pairs: NaN where a branch is one; which branches are more than that."""
-    below = branches.imag < -1e-9 * np.maximum(np.abs(branches), 1.0)
-    kept = np.asarray(~below.all(axis=1))
-    return np.asarray(np.where(below, np.nan, branches)[kept]), kept
+    old, new = linear_sum_assignment(np.minimum(distance, off_line) / size + LIKENESS * unlike)
+    return np.asarray(old), np.asarray(new)

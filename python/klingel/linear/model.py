@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -75,6 +75,15 @@ class LinearModel:
     def state(self, name: str) -> int:
         """Place of a state; errors: InputError."""
         return _places(self.states, [name], "states")[0]
+
+    def reduced(self, order: int, *, scales: Mapping[str, float] | None = None) -> tuple[LinearModel, float]:
+        """With `order` states by balanced truncation, and a bound of the error (`klingel.linear.reduce.reduced`).
+
+        scales: sizes of inputs and outputs by name, 1 for those not named. Errors: InputError for an order out of range.
+        """
+        from klingel.linear.reduce import reduced
+
+        return reduced(self, order, scales=scales)
 
     def to_control(self) -> control.StateSpace:
         """As python-control's StateSpace with the names of states, inputs and outputs."""

@@ -147,7 +147,7 @@ def _shares(energies: Mapping[str, float]) -> dict[str, float]:
     total = sum(abs(e) for e in energies.values())
     if not total > 0.0:
         return {}
-    return dict(sorted(((k, e / total) for k, e in energies.items()), key=lambda item: -abs(item[1])))
+    return dict(sorted(((k, float(e / total)) for k, e in energies.items()), key=lambda item: -abs(item[1])))
 
 
 def _main(shares: Mapping[str, float]) -> str:

@@ -38,14 +38,13 @@ class Sweep:
     def __init__(self, *, at: Quantity | None = None, controllers: bool = True) -> None:
         self.at = at
         self.controllers = controllers
-        self._near: tuple[float, OperatingPoint] | None = None
+        self._near: OperatingPoint | None = None
 
     def __call__(self, scenario: Scenario) -> Linearised:
         """The models of a scenario; errors: SimulationError where there is no steady state, InputError."""
         spec = steady_spec(scenario, at=self.at)
-        point = self._solved(spec)
-        self._near = (spec["speed"], point)
-        raw = point.linearise()
+        self._near = self._solved(spec)
+        raw = self._near.linearise()
         plant = of_raw(raw, spec["name"], spec["speed"], controllers=False)
         control = raw["control"]
         if not self.controllers or control is None:
@@ -55,13 +54,10 @@ class Sweep:
         return Linearised(close(commanded, control | {"driven": list(range(len(driven)))}), plant, spec)
 
     def _solved(self, spec: Spec) -> OperatingPoint:
-        """From the neighbour of the same speed if that leads there, else from the design position.
-
-        The wheels of a neighbour of another speed turn wrongly, and Newton's method may find where driven ones slide.
-        """
-        if self._near is not None and self._near[0] == spec["speed"]:
+        """From the neighbour if that leads there, else from the design position."""
+        if self._near is not None:
             try:
-                return solve(spec, self._near[1])
+                return solve(spec, self._near)
             except SimulationError:
                 pass
         return solve(spec)

@@ -39,8 +39,16 @@ LINES: Sequence[tuple[str, str | tuple[int, tuple[float, ...]], str]] = (
 )
 """Colour, line and marker of branches that are named."""
 
-KINDS = {"body": ("#000000", "o"), "bogie": ("#0072B2", "s"), "wheelset": ("#D55E00", "^"), "": ("#009E73", "D")}
-"""Colour and marker of a mode by what moves most."""
+KINDS = {
+    "body": ("#000000", "o", "mostly car body"),
+    "bogie": ("#0072B2", "s", "mostly bogies"),
+    "wheelset": ("#D55E00", "^", "mostly wheelsets"),
+    "": ("#009E73", "D", "other"),
+}
+"""Colour, marker and words of a mode by what moves most."""
+
+SAME = 0.02
+"""Relative distance of eigenvalues below which they are drawn as one."""
 
 UNIT_WORDS = {"m/s": ("km/h", 3.6)}
 """Units that people read, and how many of them an SI unit is."""
@@ -57,32 +65,52 @@ def modes_figure(found: Sequence[Mode], *, title: str, highest: float = HIGHEST)
     Returns:
         The figure. Unstable modes lie left of the line at zero.
     """
-    drawn = [mode for mode in found if mode.swings and mode.frequency <= highest][::-1]
+    drawn = _rows(found, highest)[::-1]
     with styled():
-        figure, (axis,) = panels(1, width=7.2, height=1.6 + 0.21 * max(len(drawn), 4))
-        ratios = 100.0 * np.array([mode.damping for mode in drawn])
-        rows = np.arange(len(drawn))
-        axis.hlines(rows, 0.0, ratios, color=PALE, lw=1.0)
-        for kind, (color, marker) in KINDS.items():
-            of = [i for i, mode in enumerate(drawn) if _kind(mode) == kind]
-            label = {"body": "mostly car body", "bogie": "mostly bogies", "wheelset": "mostly wheelsets", "": "other"}[
-                kind
-            ]
+        figure, (axis,) = panels(1, width=7.2, height=1.7 + 0.21 * max(len(drawn), 4))
+        figure.suptitle(title, x=0.01, ha="left", weight="bold", size=10)
+        ratios = 100.0 * np.array([mode.damping for mode, _ in drawn])
+        places = np.arange(len(drawn))
+        axis.hlines(places, 0.0, ratios, color=PALE, lw=1.0)
+        for kind, (color, marker, label) in KINDS.items():
+            of = [i for i, (mode, _) in enumerate(drawn) if _kind(mode) == kind]
             if of:
-                axis.plot(ratios[of], rows[of], marker, color=color, ms=5.5, label=label, zorder=3)
+                axis.plot(ratios[of], places[of], marker, color=color, ms=5.5, label=label, zorder=3)
         axis.axvline(0.0, color=INK, lw=0.9)
-        if len(ratios) and ratios.min() < 0.0:
-            axis.axvspan(1.3 * ratios.min(), 0.0, color=BAND, zorder=0)
-            axis.set_xlim(left=1.3 * ratios.min())
-        else:
-            axis.set_xlim(left=0.0)
-        axis.set_yticks(rows, [f"{mode.name}   {mode.frequency:6.2f} Hz" for mode in drawn], fontsize=7.6)
+        left = 1.3 * min(ratios.min(initial=0.0), 0.0)
+        if left < 0.0:
+            axis.axvspan(left, 0.0, color=BAND, zorder=0)
+        axis.set_xlim(left=left)
+        axis.set_yticks(
+            places, [f"{_named(mode, many)}   {mode.frequency:6.2f} Hz" for mode, many in drawn], fontsize=7.6
+        )
         axis.set_ylim(-0.8, len(drawn) - 0.2)
         axis.grid(visible=False, axis="y")
         axis.set_xlabel("damping ratio  [%]")
-        axis.set_title(title)
         figure.legend(loc="outside lower center", ncols=4, handletextpad=0.2)
         return figure
+
+
+def _rows(found: Sequence[Mode], highest: float) -> list[tuple[Mode, int]]:
+    """What swings up to a frequency [Hz]; modes of one name and nearly one eigenvalue are one row that counts them."""
+    rows: list[tuple[Mode, int]] = []
+    for mode in found:
+        if not mode.swings or mode.frequency > highest:
+            continue
+        same = [i for i, (other, _) in enumerate(rows) if other.name == mode.name and _near(mode, other)]
+        if same:
+            rows[same[0]] = (rows[same[0]][0], rows[same[0]][1] + 1)
+        else:
+            rows.append((mode, 1))
+    return rows
+
+
+def _near(mode: Mode, other: Mode) -> bool:
+    return abs(mode.eigenvalue - other.eigenvalue) < SAME * abs(mode.eigenvalue)
+
+
+def _named(mode: Mode, many: int) -> str:
+    return mode.name if many == 1 else f"{mode.name} ({many})"
 
 
 def _kind(mode: Mode) -> str:
@@ -124,10 +152,21 @@ def locus_figure(locus: RootLocus, *, title: str, highest: float = HIGHEST) -> F
 
 
 def least_damped(locus: RootLocus, count: int, highest: float = HIGHEST) -> list[int]:
-    """Branches with the smallest damping ratios anywhere, the smallest first; oscillations up to `highest` [Hz]."""
+    """Branches with the smallest damping ratios anywhere, the smallest first: up to `highest` [Hz], twins once."""
     damping = np.where((locus.frequency > 0.05) & (locus.frequency <= highest), locus.damping, np.nan)
     seen = [i for i in range(damping.shape[1]) if np.isfinite(damping[:, i]).any()]
-    return sorted(seen, key=lambda i: float(np.nanmin(damping[:, i])))[:count]
+    chosen: list[int] = []
+    for branch in sorted(seen, key=lambda i: float(np.nanmin(damping[:, i]))):
+        if len(chosen) < count and not any(_together(locus, branch, other) for other in chosen):
+            chosen.append(branch)
+    return chosen
+
+
+def _together(locus: RootLocus, branch: int, other: int) -> bool:
+    """Whether two branches would cover each other, as those of the two bogies do."""
+    s, t = locus.eigenvalues[:, branch], locus.eigenvalues[:, other]
+    both = np.isfinite(s) & np.isfinite(t)
+    return bool(both.any() and (np.abs(s - t)[both] < SAME * np.abs(s)[both]).all())
 
 
 def _plane(

@@ -43,15 +43,16 @@ def critical_figure(critical: CriticalSpeed, *, title: str, bifurcation: Bifurca
                 _mark(axis, bifurcation.speed, "nonlinear", NONLINEAR, "-")
             axes[1].legend(loc="upper left")
         _mark(axes[0], critical.speed, "linear", LINEAR, "--")
-        axes[0].legend(*_own(axes[0], 2 if bifurcation is not None else 3), loc="upper left")
+        axes[0].legend(*_own(axes[0], bifurcation is not None), loc="upper left")
         axes[-1].set_xlabel("speed  [km/h]")
         return figure
 
 
-def _own(axis: Axes, count: int) -> tuple[list[Artist], list[str]]:
-    """The first entries of a legend: those that the panel below does not repeat."""
-    handles, labels = axis.get_legend_handles_labels()
-    return handles[:count], labels[:count]
+def _own(axis: Axes, repeated: bool) -> tuple[list[Artist], list[str]]:
+    """Entries of a legend, without the critical speeds if the panel below repeats them."""
+    entries = zip(*axis.get_legend_handles_labels(), strict=True)
+    kept = [(handle, label) for handle, label in entries if not (repeated and "critical speed" in label)]
+    return [handle for handle, _ in kept], [label for _, label in kept]
 
 
 def _growth(axis: Axes, critical: CriticalSpeed) -> None:
@@ -71,6 +72,7 @@ def _growth(axis: Axes, critical: CriticalSpeed) -> None:
 
 def _amplitudes(axis: Axes, bifurcation: Bifurcation) -> None:
     axis.plot(KMH * bifurcation.speeds, 1e3 * bifurcation.amplitudes, color=RUN, lw=1.4, label="run that slows down")
+    _rest(axis, bifurcation)
     held = bifurcation.table()
     for hunts, face, label in ((True, INK, "constant speed: hunts for ever"), (False, "white", "comes to rest")):
         rows = held[held["hunts"] == hunts]
@@ -78,6 +80,22 @@ def _amplitudes(axis: Axes, bifurcation: Bifurcation) -> None:
         axis.plot(speeds, amplitudes, "o", ms=5.5, mfc=face, mec=INK, ls="", label=label, zorder=4)
     axis.set_ylim(bottom=-0.04 * max(1e3 * float(np.max(bifurcation.amplitudes)), 1e-3))
     axis.set_ylabel("largest amplitude of a wheelset  [mm]")
+
+
+def _rest(axis: Axes, bifurcation: Bifurcation) -> None:
+    """Rest as a state of its own: stable up to the linear critical speed, unstable beyond."""
+    begin, end = KMH * float(bifurcation.speeds.min()), KMH * float(bifurcation.linear.speeds[-1])
+    edge = bifurcation.linear.speed
+    change = end if edge is None else KMH * edge
+    axis.plot(
+        [min(begin, KMH * float(bifurcation.linear.speeds[0])), change],
+        [0.0, 0.0],
+        color=INK,
+        lw=1.8,
+        label="rest, stable",
+    )
+    if edge is not None:
+        axis.plot([change, end], [0.0, 0.0], color=INK, lw=1.2, ls=(0, (3, 2)), label="rest, unstable")
 
 
 def _mark(axis: Axes, speed: float | None, word: str, color: str, line: str) -> None:

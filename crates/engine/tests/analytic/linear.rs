@@ -54,12 +54,12 @@ fn slopes_are_central_differences() {
             .map(|row| (0..n + inputs).map(|column| (exact(row, column) * units[column]).abs()).fold(1e-12, f64::max))
             .collect();
         let mut worst: f64 = 0.0;
-        for column in 0..n + inputs {
-            let h = 2e-4 * units[column];
+        for (column, unit) in units.iter().enumerate() {
+            let h = 2e-4 * unit;
             let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|k| at_place(column, k * h));
             for row in 0..n + outputs {
                 let difference = (a[row] - 8.0 * b[row] + 8.0 * c[row] - d[row]) / (12.0 * h);
-                let error = (difference - exact(row, column)).abs() * units[column] / typical[row];
+                let error = (difference - exact(row, column)).abs() * unit / typical[row];
                 worst = worst.max(error);
                 assert!(error < 1e-6, "{law}: row {row}, column {column}: {difference} {}", exact(row, column));
             }

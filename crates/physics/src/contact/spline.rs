@@ -10,6 +10,19 @@ pub(super) struct Axis {
     pub len: usize,
 }
 
+/// Weights of the three nodes about a place `off` steps behind the middle one.
+#[inline(always)]
+pub(super) fn weights(off: f64) -> [f64; 3] {
+    let (l, r) = (0.5 - off, 0.5 + off);
+    [0.5 * l * l, 0.75 - off * off, 0.5 * r * r]
+}
+
+/// Slopes of the weights over the place counted in steps.
+#[inline(always)]
+pub(super) fn slopes(off: f64) -> [f64; 3] {
+    [off - 0.5, -2.0 * off, off + 0.5]
+}
+
 /// The three nodes about a place with their weights and the weights of the slope.
 struct Stencil {
     first: usize,
@@ -28,14 +41,9 @@ impl Axis {
     fn stencil(&self, x: f64) -> Stencil {
         let place = (x - self.least) / self.step;
         let nearest = (place + 0.5) as usize;
-        let f = place - nearest as f64;
-        let (l, r) = (0.5 - f, 0.5 + f);
-        let k = 1.0 / self.step;
-        Stencil {
-            first: nearest,
-            weight: [0.5 * l * l, 0.75 - f * f, 0.5 * r * r],
-            slope: [-l * k, -2.0 * f * k, r * k],
-        }
+        let off = place - nearest as f64;
+        let steps = 1.0 / self.step;
+        Stencil { first: nearest, weight: weights(off), slope: slopes(off).map(|slope| slope * steps) }
     }
 }
 

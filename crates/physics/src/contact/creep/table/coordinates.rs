@@ -38,14 +38,14 @@ pub(super) fn scales<S: Scalar>(kalker: &Kalker, ratio: S) -> [S; 3] {
     [c11, c22, spin.sqrt().sqrt()]
 }
 
-/// u/w of the ball's place u = v (12 + 5 m)/(24 + 18 m + 5 m^2), m = |v|, for v = w stiffness/limit; `size` = |w|.
+/// u/v of the ball's place u = v (12 + 5 m)/(24 + 18 m + 5 m^2) for m = |v|, given m^2.
 ///
 /// Along a creepage without spin u is v/2 (1 - m/3) for small m, as the force is, and 1 - |u| is 1.2/m for large ones.
-/// The limit stays in the numerator, so that no load is no trouble.
-pub(super) fn contraction<S: Scalar>(size: S, stiffness: S, limit: S) -> S {
-    let slip = size * stiffness;
-    let below = limit.square() * 24.0 + limit * slip * 18.0 + slip.square() * 5.0;
-    stiffness * (limit * 12.0 + slip * 5.0) / below
+/// Numerator and denominator are multiplied by 24 - 18 m + 5 m^2: the latter then needs no root, and neither waits.
+pub(super) fn contraction<S: Scalar>(square: S) -> S {
+    let share = (square * (square * 25.0 - 84.0) + 576.0).recip();
+    let size = square.sqrt();
+    (size * 5.0 + 12.0) * ((square * 5.0 + 24.0) - size * 18.0) * share
 }
 
 /// The creepage v of a place in the ball.

@@ -116,7 +116,7 @@ fn spline(intervals: [usize; 4], unit: [f64; 3], numbers: &[u8]) -> Result<Splin
             }
         }
     }
-    Ok(Spline { intervals, scale, nodes: all })
+    Ok(Spline::new(intervals, scale, all))
 }
 
 /// Stored place and sign of each node of an axis that begins one step before 0.

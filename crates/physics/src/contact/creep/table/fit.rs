@@ -2,6 +2,7 @@
 //! Beyond the surface of the ball, which is full sliding, forces go on as their mirror images about it.
 
 use super::coordinates::size;
+use crate::contact::spline::weights;
 
 /// Steps beyond the ball that nodes are needed for: one and a half for the spline, one for the ends of the fit.
 const MARGIN: f64 = 2.5;
@@ -153,8 +154,7 @@ impl Ball {
     pub fn value(&self, field: &Field, place: [f64; 3]) -> [f64; 3] {
         let near: [(i64, [f64; 3]); 3] = core::array::from_fn(|a| {
             let at = place[a] * self.intervals[a] as f64;
-            let f = at - at.round();
-            (at.round() as i64, [0.5 * (0.5 - f).powi(2), 0.75 - f * f, 0.5 * (0.5 + f).powi(2)])
+            (at.round() as i64, weights(at - at.round()))
         });
         let mut sum = [0.0; 3];
         for (i, u) in (-1..).zip(near[0].1) {

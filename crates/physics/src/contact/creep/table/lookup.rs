@@ -1,8 +1,9 @@
 //! The table's spline: tensor quadratic B-splines over the ball of creepages and the slenderness, mirrored by sign.
-//! Three forces lie beside each other, and the slenderness runs fastest: one sum over 27 rows gives all of it.
+//! Three forces lie beside each other, and the slenderness runs fastest: one contact reads nine runs of nine nodes.
 
 use super::coordinates::RIM;
 use crate::Scalar;
+use crate::contact::spline::{slopes, weights};
 
 /// Numbers a node: three forces and one to fill the registers.
 const WIDTH: usize = 4;
@@ -11,14 +12,17 @@ pub(super) const ROW: usize = 3 * WIDTH;
 
 /// Coefficients, with one node beyond either end of each axis.
 pub(super) struct Spline {
-    /// Intervals from the middle of the ball to its surface, and over the whole slenderness.
-    pub intervals: [usize; 4],
+    /// Intervals from the middle of the ball to its surface, and over the whole slenderness; the same as steps per unit.
+    intervals: [usize; 4],
+    steps: [f64; 4],
+    /// Numbers from one node to the next along u1, u2 and the slenderness.
+    strides: [usize; 3],
     /// Bounded factors of the creepages, coefficients along the slenderness.
-    pub scale: Vec<[f64; 3]>,
+    scale: Vec<[f64; 3]>,
     /// For each step of q, over u1 from -1 step, u2 from -1 - step and u3 from -1 step, the rows of its three neighbours.
     ///
     /// So every number is there three times, but what one contact reads lies in a few pages of memory, not in dozens.
-    pub nodes: Vec<f32>,
+    nodes: Vec<f32>,
 }
 
 impl core::fmt::Debug for Spline {
@@ -52,18 +56,6 @@ impl Stencil {
         let shifted = place + WHOLE;
         Self { first: (shifted.to_bits() as u32 as usize).min(last), off: place - (shifted - WHOLE) }
     }
-
-    #[inline(always)]
-    fn weights(self) -> [f64; 3] {
-        let (l, r) = (0.5 - self.off, 0.5 + self.off);
-        [0.5 * l * l, 0.75 - self.off * self.off, 0.5 * r * r]
-    }
-
-    /// Slopes of the weights over the place counted in steps.
-    #[inline(always)]
-    fn slopes(self) -> [f64; 3] {
-        [self.off - 0.5, -2.0 * self.off, self.off + 0.5]
-    }
 }
 
 /// Stencils about a place of the positive quarter, the signs of Fx and of Fy with Mz there, and which are not nil by them.
@@ -83,6 +75,13 @@ impl Place {
 }
 
 impl Spline {
+    pub fn new(intervals: [usize; 4], scale: Vec<[f64; 3]>, nodes: Vec<f32>) -> Self {
+        let [s1, s2, s3, sq] = intervals.map(|n| n as f64);
+        let [l1, l2, l3, _] = Self::lengths(intervals);
+        let strides = [l2 * l3 * ROW, l3 * ROW, l1 * l2 * l3 * ROW];
+        Self { intervals, steps: [s1, s2, s3, sq / (2.0 * RIM)], strides, scale, nodes }
+    }
+
     /// Nodes along each axis.
     pub fn lengths([n1, n2, n3, nq]: [usize; 4]) -> [usize; 4] {
         [n1 + 3, 2 * n2 + 3, n3 + 3, nq + 3]
@@ -90,46 +89,79 @@ impl Spline {
 
     #[inline(always)]
     fn slender(&self, q: f64) -> Stencil {
-        let n = self.intervals[3];
-        Stencil::new((q + RIM) * (n as f64 / (2.0 * RIM)), n)
+        Stencil::new((q + RIM) * self.steps[3], self.intervals[3])
     }
 
     /// Bounded factors of the creepages at a slenderness within the table.
-    #[inline]
+    #[inline(always)]
     pub fn scales<S: Scalar>(&self, q: S) -> [S; 3] {
-        let sum = |first: usize, w: &[f64; 3]| -> [f64; 3] {
-            let [a, b, c] = [0, 1, 2].map(|i| &self.scale[first + i]);
-            core::array::from_fn(|k| w[0] * a[k] + w[1] * b[k] + w[2] * c[k])
+        let sum = |first: usize, [u, v, w]: [f64; 3]| -> [f64; 3] {
+            let three = &self.scale[first..first + 3];
+            core::array::from_fn(|k| u * three[0][k] + v * three[1][k] + w * three[2][k])
         };
         S::lift_n_lazy(
             [q],
             |[q]| {
                 let s = self.slender(q);
-                sum(s.first, &s.weights())
+                sum(s.first, weights(s.off))
             },
             |[q]| {
-                let (s, steps) = (self.slender(q), self.intervals[3] as f64 / (2.0 * RIM));
-                (sum(s.first, &s.weights()), sum(s.first, &s.slopes()).map(|slope| [slope * steps]))
+                let s = self.slender(q);
+                (sum(s.first, weights(s.off)), sum(s.first, slopes(s.off)).map(|slope| [slope * self.steps[3]]))
             },
         )
     }
 
     /// Fx and Fy over mu N (before the limiter) and Mz over mu N (a + b)/2 at (u1, u2, u3, q).
-    #[inline]
+    #[inline(always)]
     pub fn at<S: Scalar>(&self, x: [S; 4]) -> [S; 3] {
         S::lift_n_lazy(x, |x| self.values(x), |x| self.slopes(x))
+    }
+
+    #[inline]
+    fn values(&self, x: [f64; 4]) -> [f64; 3] {
+        #[cfg(target_arch = "x86_64")]
+        {
+            #[target_feature(enable = "avx2,fma")]
+            fn wide(spline: &Spline, u1: f64, u2: f64, u3: f64, q: f64) -> [f64; 3] {
+                spline.values_by::<Avx2>([u1, u2, u3, q])
+            }
+            if Avx2::there() {
+                let [u1, u2, u3, q] = x;
+                // SAFETY: the features were just found. Single numbers stay in registers, an array would not.
+                return unsafe { wide(self, u1, u2, u3, q) };
+            }
+        }
+        self.values_by::<Any>(x)
+    }
+
+    /// The values of `values`, bitwise, and their Jacobian.
+    #[inline]
+    fn slopes(&self, x: [f64; 4]) -> ([f64; 3], [[f64; 4]; 3]) {
+        #[cfg(target_arch = "x86_64")]
+        {
+            #[target_feature(enable = "avx2,fma")]
+            fn wide(spline: &Spline, x: [f64; 4]) -> ([f64; 3], [[f64; 4]; 3]) {
+                spline.slopes_by::<Avx2>(x)
+            }
+            if Avx2::there() {
+                // SAFETY: the features were just found.
+                return unsafe { wide(self, x) };
+            }
+        }
+        self.slopes_by::<Any>(x)
     }
 
     /// The quarter u1 >= 0, u3 >= 0 holds everything: Fx turns with the sign of u1, Fy and Mz with that of (u2, u3).
     #[inline(always)]
     fn place(&self, [u1, u2, u3, q]: [f64; 4]) -> Place {
-        let [n1, n2, n3, _] = self.intervals;
+        let ([n1, n2, n3, _], [s1, s2, s3, _]) = (self.intervals, self.steps);
         let along = if u1 < 0.0 { -1.0 } else { 1.0 };
         let across = if u3 < 0.0 || (u3 == 0.0 && u2 < 0.0) { -1.0 } else { 1.0 };
         let stencils = [
-            Stencil::new(u1.abs() * n1 as f64, n1),
-            Stencil::new((across * u2 + 1.0) * n2 as f64, 2 * n2),
-            Stencil::new(u3.abs() * n3 as f64, n3),
+            Stencil::new(u1.abs() * s1, n1),
+            Stencil::new((across * u2).mul_add(s2, s2), 2 * n2),
+            Stencil::new(u3.abs() * s3, n3),
             self.slender(q),
         ];
         // A sum over mirror images is nil but for rounding where it turns its sign.
@@ -137,101 +169,118 @@ impl Spline {
         Place { stencils, signs: [along, across], present }
     }
 
-    #[inline]
-    fn values(&self, x: [f64; 4]) -> [f64; 3] {
+    #[inline(always)]
+    fn values_by<F: Four>(&self, x: [f64; 4]) -> [f64; 3] {
         let place = self.place(x);
-        let [a, b, c, d] = place.stencils;
-        let row = self.rows(place.stencils, [a.weights(), b.weights(), c.weights()]);
-        place.turned(last(&row, &d.weights()))
+        let [a, b, c, d] = place.stencils.map(|s| weights(s.off));
+        place.turned(last::<F>(&self.block::<F>(&place.stencils, a, b), c, d))
     }
 
-    /// The values of `values`, bitwise, and their Jacobian.
-    fn slopes(&self, x: [f64; 4]) -> ([f64; 3], [[f64; 4]; 3]) {
+    #[inline(always)]
+    fn slopes_by<F: Four>(&self, x: [f64; 4]) -> ([f64; 3], [[f64; 4]; 3]) {
         let place = self.place(x);
-        let (all, [along, across]) = (place.stencils, place.signs);
-        let ([a, b, c, d], [da, db, dc, dd]) = (all.map(Stencil::weights), all.map(Stencil::slopes));
-        let row = self.rows(all, [a, b, c]);
+        let (all, [along, across]) = (&place.stencils, place.signs);
+        let ([a, b, c, d], [da, db, dc, dd]) = (all.map(|s| weights(s.off)), all.map(|s| slopes(s.off)));
+        let (block, [s1, s2, s3, sq]) = (self.block::<F>(all, a, b), self.steps);
         let turned = [along, across, across];
-        let steps = self.intervals.map(|n| n as f64);
         let change = [
-            last(&self.rows(all, [da, b, c]), &d).map(|s| s * steps[0] * along),
-            last(&self.rows(all, [a, db, c]), &d).map(|s| s * steps[1] * across),
-            last(&self.rows(all, [a, b, dc]), &d).map(|s| s * steps[2] * across),
-            last(&row, &dd).map(|s| s * (steps[3] / (2.0 * RIM))),
+            last::<F>(&self.block::<F>(all, da, b), c, d).map(|s| s * s1 * along),
+            last::<F>(&self.block::<F>(all, a, db), c, d).map(|s| s * s2 * across),
+            last::<F>(&block, dc, d).map(|s| s * s3 * across),
+            last::<F>(&block, c, dd).map(|s| s * sq),
         ];
-        (place.turned(last(&row, &d)), core::array::from_fn(|k| core::array::from_fn(|m| turned[k] * change[m][k])))
+        let value = place.turned(last::<F>(&block, c, d));
+        (value, core::array::from_fn(|k| core::array::from_fn(|m| turned[k] * change[m][k])))
     }
 
-    /// Three neighbours along the slenderness, each the sum over 27 nodes of the ball.
-    #[inline]
-    fn rows(&self, [a, b, c, d]: [Stencil; 4], weights: [[f64; 3]; 3]) -> [f64; ROW] {
-        let [l1, l2, l3, _] = Self::lengths(self.intervals);
-        let (step1, step2) = (l2 * l3 * ROW, l3 * ROW);
-        let first = d.first * l1 * step1 + a.first * step1 + b.first * step2 + c.first * ROW;
+    /// The nine nodes of u3 and of the slenderness about a place, each summed over its nine of u1 and u2.
+    #[inline(always)]
+    fn block<F: Four>(&self, [a, b, c, d]: &[Stencil; 4], along: [f64; 3], across: [f64; 3]) -> Block {
+        let [step1, step2, step4] = self.strides;
+        let first = d.first * step4 + a.first * step1 + b.first * step2 + c.first * ROW;
         let nodes = &self.nodes[first..first + 2 * (step1 + step2) + 3 * ROW];
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
-            // SAFETY: the features were just found.
-            return unsafe { rows_avx2(nodes, [step1, step2], weights) };
-        }
-        rows_any(nodes, [step1, step2], weights)
-    }
-}
-
-/// Sums of rows that begin at multiples of the steps. There is a sum for each node of u3: one alone would be a chain of 27
-/// additions, each waiting for the one before.
-#[inline]
-fn rows_any(nodes: &[f32], [step1, step2]: [usize; 2], [u, v, w]: [[f64; 3]; 3]) -> [f64; ROW] {
-    let mut sums = [[0.0; ROW]; 3];
-    for (i, u) in u.iter().enumerate() {
-        for (j, v) in v.iter().enumerate() {
-            for (k, (sum, w)) in sums.iter_mut().zip(w).enumerate() {
-                let row = &nodes[i * step1 + j * step2 + k * ROW..][..ROW];
-                let weight = u * v * w;
-                for (sum, &node) in sum.iter_mut().zip(row) {
-                    *sum = weight.mul_add(f64::from(node), *sum);
+        let mut sums = [[0.0; WIDTH]; 9];
+        for (i, along) in along.into_iter().enumerate() {
+            for (j, across) in across.into_iter().enumerate() {
+                let (start, weight) = (i * step1 + j * step2, along * across);
+                let (nodes, _) = nodes[start..start + 3 * ROW].as_chunks();
+                for (sum, node) in sums.iter_mut().zip(nodes) {
+                    *sum = F::add(F::node(node), weight, *sum);
                 }
             }
         }
+        sums
     }
-    let [first, second, third] = sums;
-    core::array::from_fn(|n| (first[n] + second[n]) + third[n])
 }
 
-/// The same operations four at a time. A fused one rounds once wherever it is computed, so the result is the same bitwise.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn rows_avx2(nodes: &[f32], [step1, step2]: [usize; 2], [u, v, w]: [[f64; 3]; 3]) -> [f64; ROW] {
-    use core::arch::x86_64::{
-        _mm_loadu_ps, _mm256_add_pd, _mm256_cvtps_pd, _mm256_fmadd_pd, _mm256_set1_pd, _mm256_setzero_pd,
-        _mm256_storeu_pd,
-    };
-    assert!(nodes.len() >= 2 * (step1 + step2) + 3 * ROW);
-    let mut sums = [[_mm256_setzero_pd(); ROW / 4]; 3];
-    for (i, u) in u.iter().enumerate() {
-        for (j, v) in v.iter().enumerate() {
-            for (k, (sum, w)) in sums.iter_mut().zip(w).enumerate() {
-                let (start, weight) = (i * step1 + j * step2 + k * ROW, _mm256_set1_pd(u * v * w));
-                for (four, sum) in sum.iter_mut().enumerate() {
-                    // SAFETY: the last row ends within the nodes, as was just seen.
-                    let node = unsafe { _mm_loadu_ps(nodes.as_ptr().add(start + 4 * four)) };
-                    *sum = _mm256_fmadd_pd(weight, _mm256_cvtps_pd(node), *sum);
-                }
-            }
-        }
-    }
-    let mut row = [0.0; ROW];
-    let [first, second, third] = sums;
-    for (n, four) in row.chunks_exact_mut(4).enumerate() {
-        let sum = _mm256_add_pd(_mm256_add_pd(first[n], second[n]), third[n]);
-        // SAFETY: four numbers of the row.
-        unsafe { _mm256_storeu_pd(four.as_mut_ptr(), sum) };
-    }
-    row
-}
+/// Sums of nine nodes, the slenderness fastest. Side by side: a single one would be a chain of additions, each waiting for
+/// the one before.
+type Block = [[f64; WIDTH]; 9];
 
-/// The sum along the slenderness.
+/// The sum over u3 and the slenderness.
 #[inline(always)]
-fn last(row: &[f64; ROW], w: &[f64; 3]) -> [f64; 3] {
-    core::array::from_fn(|k| w[0] * row[k] + w[1] * row[WIDTH + k] + w[2] * row[2 * WIDTH + k])
+fn last<F: Four>(block: &Block, [u, v, w]: [f64; 3], slender: [f64; 3]) -> [f64; 3] {
+    let nil = [0.0; WIDTH];
+    let mut sum = nil;
+    for (q, slender) in slender.into_iter().enumerate() {
+        sum = F::add(F::add(block[q], u, F::add(block[3 + q], v, F::add(block[6 + q], w, nil))), slender, sum);
+    }
+    [sum[0], sum[1], sum[2]]
+}
+
+/// Four numbers at a time. A fused operation rounds once whatever computes it, so all give the same bitwise.
+trait Four {
+    /// The numbers of a node.
+    fn node(node: &[f32; WIDTH]) -> [f64; WIDTH];
+    /// x weight + sum, fused.
+    fn add(x: [f64; WIDTH], weight: f64, sum: [f64; WIDTH]) -> [f64; WIDTH];
+}
+
+/// On any processor.
+struct Any;
+
+impl Four for Any {
+    #[inline(always)]
+    fn node(node: &[f32; WIDTH]) -> [f64; WIDTH] {
+        node.map(f64::from)
+    }
+    #[inline(always)]
+    fn add(x: [f64; WIDTH], weight: f64, sum: [f64; WIDTH]) -> [f64; WIDTH] {
+        core::array::from_fn(|n| weight.mul_add(x[n], sum[n]))
+    }
+}
+
+/// In wide registers; the compiler finds them by itself only in part.
+#[cfg(target_arch = "x86_64")]
+struct Avx2;
+
+#[cfg(target_arch = "x86_64")]
+impl Avx2 {
+    #[inline(always)]
+    fn there() -> bool {
+        std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Four for Avx2 {
+    #[inline(always)]
+    fn node(node: &[f32; WIDTH]) -> [f64; WIDTH] {
+        use core::arch::x86_64::{_mm_loadu_ps, _mm256_cvtps_pd, _mm256_storeu_pd};
+        let mut four = [0.0; WIDTH];
+        // SAFETY: four numbers are read and four written; called only where the features were found.
+        unsafe { _mm256_storeu_pd(four.as_mut_ptr(), _mm256_cvtps_pd(_mm_loadu_ps(node.as_ptr()))) };
+        four
+    }
+    #[inline(always)]
+    fn add(x: [f64; WIDTH], weight: f64, sum: [f64; WIDTH]) -> [f64; WIDTH] {
+        use core::arch::x86_64::{_mm256_fmadd_pd, _mm256_loadu_pd, _mm256_set1_pd, _mm256_storeu_pd};
+        let mut four = [0.0; WIDTH];
+        // SAFETY: as above.
+        unsafe {
+            let (x, sum) = (_mm256_loadu_pd(x.as_ptr()), _mm256_loadu_pd(sum.as_ptr()));
+            _mm256_storeu_pd(four.as_mut_ptr(), _mm256_fmadd_pd(x, _mm256_set1_pd(weight), sum));
+        }
+        four
+    }
 }

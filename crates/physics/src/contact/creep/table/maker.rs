@@ -26,6 +26,9 @@ const SOLVER: [&str; 9] = [
 /// Creepages that one part solves, with few elements and for the correction: some seconds either way.
 const SHARE: [usize; 2] = [1024, 128];
 
+/// Intervals of one axis, and elements; the solver's own limit is below it.
+const MOST_INTERVALS: usize = 100;
+
 /// How fine a table is and of what it is made.
 #[derive(Clone, Debug)]
 pub struct Maker {
@@ -45,7 +48,7 @@ struct Part {
 
 impl Maker {
     /// Intervals of the table in the package: of u1, u2 and u3 from 0 to 1, and of the slenderness.
-    pub const INTERVALS: [usize; 4] = [12, 16, 20, 22];
+    pub const INTERVALS: [usize; 4] = [12, 16, 40, 22];
 
     /// `elements` along and across the patch, even; a quarter as many are solved at every node.
     /// `intervals` of u1, u2, u3 (even) and of the slenderness.
@@ -57,14 +60,15 @@ impl Maker {
     /// ```
     ///
     /// # Errors
-    /// Poisson's ratio outside 0 to 0.5; elements that are odd or out of the solver's range; odd or no intervals.
+    /// Poisson's ratio outside 0 to 0.5; elements that are odd or out of the solver's range; odd, no or over 100 intervals.
     pub fn new(poisson: f64, elements: [usize; 2], intervals: [usize; 4]) -> Result<Self, CreepError> {
         let coarse = elements.map(|n| n / 2);
         Exact::check(poisson, elements)?;
         Exact::check(poisson, coarse)?;
         let even = |what: &str, n: usize| {
-            let ok = n > 0 && n.is_multiple_of(2);
-            let problem = format!("{n} {what} are not an even number; take {}", 2 * (n / 2).max(2));
+            let ok = (2..=MOST_INTERVALS).contains(&n) && n.is_multiple_of(2);
+            let best = 2 * (n / 2).clamp(2, MOST_INTERVALS / 2);
+            let problem = format!("{n} {what} are not an even number up to {MOST_INTERVALS}; take {best}");
             if ok { Ok(()) } else { Err(CreepError::Table { problem }) }
         };
         elements.iter().try_for_each(|&n| even("elements", n))?;

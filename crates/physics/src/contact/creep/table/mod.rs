@@ -23,7 +23,7 @@ use std::sync::OnceLock;
 /// The file of the table in the package, made by `klingel contact-table`.
 pub static CREEP_TABLE: &[u8] = include_bytes!("../../../../data/creep_table.bin");
 
-/// Creepages below this count as none, so that the size of the slip has a slope.
+/// Scaled creepages below this count as none, so that the size of the slip has a slope.
 const LEAST_CREEPAGE: f64 = 1e-14;
 
 /// Forces of the exact theory over all creepages and a/b from 1/36 to 36, for one Poisson's ratio.
@@ -100,19 +100,23 @@ impl CreepTable {
 
     /// [Fx, Fy, Mz] on the wheel, N and N m.
     pub(super) fn force<S: Scalar>(&self, kalker: &Kalker, shear_modulus: f64, c: &RollingContact<S>) -> [S; 3] {
-        let (limit, sum, q) = (limit(c), c.a + c.b, slenderness(c.a, c.b));
-        let (within, q) = (inside(q), q.clamp(-RIM, RIM));
+        let (limit, sum, mut q) = (limit(c), c.a + c.b, slenderness(c.a, c.b));
+        let within = inside(q);
+        if !within.all() {
+            q = q.clamp(-RIM, RIM);
+        }
         let mut scale = self.spline.scales(q);
         if !within.all() {
             let ratio = c.a / c.b;
             let beyond = bounded(scales(kalker, ratio), ratio);
             scale = core::array::from_fn(|i| S::select(within, scale[i], beyond[i]));
         }
-        // v = w G a (a + b)/(mu N), as the factors are bounded ones.
-        let w = [scale[0] * c.xi, scale[1] * c.eta, scale[2] * c.phi * sum];
-        let size = (w[0].square() + w[1].square() + w[2].square() + LEAST_CREEPAGE * LEAST_CREEPAGE).sqrt();
-        let inward = contraction(size, c.a * sum * shear_modulus, limit);
-        let [fx, fy, mz] = self.spline.at([w[0] * inward, w[1] * inward, w[2] * inward, q]);
+        // As the factors are bounded ones, v has G a (a + b)/(mu N).
+        let stiffness = c.a * sum * shear_modulus / limit;
+        let v = [c.xi * stiffness * scale[0], c.eta * stiffness * scale[1], c.phi * sum * stiffness * scale[2]];
+        let square = (v[0].square() + v[1].square()) + (v[2].square() + LEAST_CREEPAGE * LEAST_CREEPAGE);
+        let inward = contraction(square);
+        let [fx, fy, mz] = self.spline.at([v[0] * inward, v[1] * inward, v[2] * inward, q]);
         let [fx, fy] = limited([fx, fy]);
         [fx * limit, fy * limit, mz * limit * sum * 0.5]
     }

@@ -61,7 +61,7 @@ fn places_in_the_ball_are_those_of_their_creepages() {
     for t in [1e-9, 0.1, 0.5, 2.0 / 3.0, 0.9, 0.999] {
         let place = [0.6 * t, 0.0, -0.8 * t];
         let v = coordinates::creepage(place);
-        let back = coordinates::contraction(coordinates::size(v), 3.0, 3.0);
+        let back = coordinates::contraction(coordinates::size(v).powi(2));
         assert!((0..3).all(|i| (v[i] * back - place[i]).abs() < 1e-14), "{t}: {v:?}");
     }
 }
@@ -147,7 +147,7 @@ fn patch<S: Scalar>([a, b, normal_force, friction, xi, eta, phi]: [S; 7]) -> Rol
 #[test]
 fn vanishing_creepages_give_the_slopes_of_the_solver() {
     // The exact force bends at rest, as v |v|; the spline has the mean slope over half a step. Measured: C11 and C22 within
-    // 1.2 %, C23 2 to 3.6 %, the moments 1 to 5 %.
+    // 1.2 %, C23 1.2 %, the moments 1 to 5 %.
     let law = law();
     for ratio in [0.05, 0.2, 1.0, 5.0, 25.0] {
         let ellipse = Exact::new(ratio, 0.28, [40, 40]).unwrap();
@@ -164,7 +164,7 @@ fn vanishing_creepages_give_the_slopes_of_the_solver() {
         let unit = |i: usize| if i == 2 { mean } else { 1.0 };
         for start in [[0.0; 3], [1e-9, 0.0, 0.0], [0.0, -1e-9, 1e-7]] {
             let f = at(start);
-            for (i, j, most) in [(0, 0, 0.02), (1, 1, 0.02), (1, 2, 0.04), (2, 1, 0.06), (2, 2, 0.04)] {
+            for (i, j, most) in [(0, 0, 0.02), (1, 1, 0.02), (1, 2, 0.02), (2, 1, 0.06), (2, 2, 0.02)] {
                 let slope = f[i].slope[j] / (stiffness * unit(i) * unit(j));
                 let error = (slope - exact[i][j]).abs() / exact[i][j].abs();
                 assert!(error < most, "{ratio} {i} {j}: {slope} {}", exact[i][j]);
@@ -208,7 +208,8 @@ fn other_materials_and_impossible_makers_are_refused() {
     let message = CreepForce::new(CreepLaw::Table, &rubber).unwrap_err().to_string();
     assert!(message.contains("Poisson's ratio of the creep table: 0.5 is outside 0.28 to 0.28"), "{message}");
     assert!(Maker::new(0.28, [41, 40], Maker::INTERVALS).is_err());
-    assert!(Maker::new(0.28, [40, 40], [12, 15, 20, 22]).is_err());
+    assert!(Maker::new(0.28, [40, 40], [12, 15, 40, 22]).is_err());
+    assert!(Maker::new(0.28, [40, 40], [12, 16, 4000, 22]).unwrap_err().to_string().contains("up to 100"));
     assert!(Maker::new(0.6, [40, 40], Maker::INTERVALS).is_err());
 }
 
