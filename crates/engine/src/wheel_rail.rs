@@ -73,11 +73,12 @@ fn wheel_on_rail<S: Scalar>(
 
     // coordinates of the contact table, which is made for a right wheel
     let (sin_rail, cos_rail) = rail[4].sin_cos();
-    let (y, z) = (p_T.y() - rail[0] - wheel.half_tape_distance * sign, p_T.z() - rail[1]);
+    let (y, z) = (p_T.y() - rail[0], p_T.z() - rail[1]);
     let sin_roll = body.sin_roll * cos_rail - body.cos_roll * sin_rail;
     let cos_roll = body.cos_roll * cos_rail + body.sin_roll * sin_rail;
-    let shift = (y * cos_rail + z * sin_rail - sin_roll * wheel.radius) * sign;
-    let depth = z * cos_rail - y * sin_rail + cos_roll * wheel.radius;
+    let shift =
+        (y * cos_rail + z * sin_rail) * sign - sin_roll * (sign * wheel.radius) - cos_rail * wheel.half_tape_distance;
+    let depth = z * cos_rail - (y - sign * wheel.half_tape_distance) * sin_rail + cos_roll * wheel.radius;
     let rail_rate_T = Vec3::new(S::zero(), rail[2], rail[3]);
     let roll = sin_roll * sign;
     let yaw = body.yaw * sign;
