@@ -60,4 +60,21 @@ pub(crate) fn settle_on_rails(m: &Model, x: &mut [f64]) {
     for body in &m.bodies {
         x[body.state + 2] += low;
     }
+    roll_where_they_touch(m, low, x);
+}
+
+/// Turns the wheels, and the motors on them, as their radius where they touch wants it: half a per cent of slip saturates
+/// the creep forces, and steep cones touch that far from the tape circle.
+fn roll_where_they_touch(m: &Model, sink: f64, x: &mut [f64]) {
+    for wheel in &m.wheels {
+        let Ok(patches) = wheel.table.patches(0.0, sink, 0.0, 0.0) else { continue };
+        let load: f64 = patches.iter().map(|p| p.normal_force).sum();
+        if load > 0.0 {
+            let radius = patches.iter().map(|p| p.normal_force * p.radius).sum::<f64>() / load;
+            x[m.rotors[wheel.rotor].state] = m.speed / radius;
+            for drive in m.drives.iter().filter(|d| d.rotor == wheel.rotor) {
+                x[drive.state + 1] = m.speed / radius / drive.law.gear_ratio;
+            }
+        }
+    }
 }
