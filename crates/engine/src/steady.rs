@@ -70,7 +70,8 @@ pub fn steady(m: &Model, wiring: Option<&Wiring>, start: Option<&Steady>) -> Res
     let curved = matches!(m.track, Course::Uniform(t) if t.curvature != 0.0 || t.cant != 0.0);
     let mut state = problem.guess();
     if !curved {
-        return problem.newton(state.clone()).or_else(|_| problem.settled(state));
+        let undamped = || problem.iterated(state.clone(), false);
+        return problem.newton(state.clone()).or_else(|_| undamped()).or_else(|_| problem.settled(state));
     }
     problem.share = 0.0;
     state = problem.newton(state)?;
@@ -142,7 +143,12 @@ impl<'a> Problem<'a> {
 
     /// Newton's method, damped as Deuflhard's natural test wants it: the next step of the same Jacobian must be shorter
     /// than this one (Newton Methods for Nonlinear Problems, 2004, sec. 3.3).
-    fn newton(&self, mut at: Steady) -> Result<Steady, EngineError> {
+    fn newton(&self, at: Steady) -> Result<Steady, EngineError> {
+        self.iterated(at, true)
+    }
+
+    /// Newton's method, damped or with nothing but the limit of what a wheel may move.
+    fn iterated(&self, mut at: Steady, damped: bool) -> Result<Steady, EngineError> {
         let n = self.free.len() + self.driven().len() + at.integrals.len();
         let mut jacobian = DMatrix::zeros(n, n);
         let mut plain = Pass::<f64>::new(self.m, self.wiring);
@@ -162,7 +168,7 @@ impl<'a> Problem<'a> {
             before = size;
             let mut share = (WHEEL_STEP / self.wheel_step(&step)).min(1.0);
             let mut next = self.moved(&at, &step, share);
-            while share > LEAST_SHARE {
+            while damped && share > LEAST_SHARE {
                 let ahead = self.plain(&next, &mut plain).ok().and_then(|r| solve(&r));
                 if ahead.is_some_and(|ahead| self.size(&at, &ahead) < size * (1.0 - 0.25 * share)) {
                     break;

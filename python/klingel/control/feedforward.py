@@ -4,6 +4,7 @@ M = kpsi [+-a rho + alpha_Y - psi_b]: + leading, - trailing in its bogie; symbol
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -191,8 +192,11 @@ def attack_angle(force: float, geometry: SteeringGeometry, contact: ContactDesig
     return float(np.copysign(brentq(missing, 0.0, saturated, xtol=1e-9), force))
 
 
-def attack_angle_table(geometry: SteeringGeometry, contact: ContactDesign) -> tuple[list[float], list[float]]:
+@cache
+def attack_angle_table(
+    geometry: SteeringGeometry, contact: ContactDesign
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Lateral force [N] and attack angle [rad] for a lookup; its ends are 0.9 of what the friction can hold."""
     limit = 0.9 * contact.friction * geometry.mass * GRAVITY / 4.0
     forces = np.linspace(-limit, limit, 41)
-    return [float(f) for f in forces], [attack_angle(float(f), geometry, contact) for f in forces]
+    return tuple(map(float, forces)), tuple(attack_angle(float(f), geometry, contact) for f in forces)

@@ -24,7 +24,8 @@ def linearise(scenario: Scenario, *, at: Quantity | None = None, controllers: bo
         commands are inputs of a continuous model about the same operating point.
     Inputs: voltages [V] and actuator commands [N] (added to those of the controllers); of every wheel, how its rail
     lies off its place, `rail_y` and `rail_z` [m], with their rates, and `rail_roll` [rad]; `track.curvature` [1/m] and
-    `track.cant` [m], uniform along the vehicle; `wind.y`, `wind.z` [N] and `wind.roll` [N m] on the car body; `hold.speed` [m/s].
+    `track.cant` [m], uniform along the vehicle; `wind.y`, `wind.z` [N] and `wind.roll` [N m] on the car body;
+    `hold.speed` [m/s].
     Outputs: every channel of a run. Errors: SimulationError where there is no steady state; InputError.
 
     >>> import klingel as kl
