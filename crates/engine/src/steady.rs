@@ -60,10 +60,7 @@ struct Problem<'a> {
 pub fn steady(m: &Model, wiring: Option<&Wiring>, start: Option<&Steady>) -> Result<Steady, EngineError> {
     let mut problem = Problem::new(m, wiring);
     if let Some(start) = start {
-        // the neighbour's state is nearly there, though its speed, voltages and the like are not ours
-        let mut state = Steady { inputs: m.inputs.clone(), iterations: 0, ..start.clone() };
-        problem.driven().iter().for_each(|&i| state.inputs[i] = start.inputs[i]);
-        if let Ok(found) = problem.newton(state) {
+        if let Ok(found) = problem.newton(problem.neighbour(start)) {
             return Ok(found);
         }
     }
@@ -128,6 +125,23 @@ impl<'a> Problem<'a> {
             }
         }
         Err(last)
+    }
+
+    /// The state of a neighbour with our voltages and the like, its velocities scaled to our speed: the same way of
+    /// running over the same track.
+    fn neighbour(&self, start: &Steady) -> Steady {
+        let m = self.m;
+        let mut state = Steady { inputs: m.inputs.clone(), iterations: 0, ..start.clone() };
+        self.driven().iter().for_each(|&i| state.inputs[i] = start.inputs[i]);
+        let reference = &m.bodies[m.reference()];
+        let ratio = m.speed / start.x[reference.state + if reference.pitches { 6 } else { 5 }];
+        for body in &m.bodies {
+            let (first, last) = if body.pitches { (6, 12) } else { (5, 10) };
+            state.x[body.state + first..body.state + last].iter_mut().for_each(|v| *v *= ratio);
+        }
+        m.rotors.iter().for_each(|r| state.x[r.state] *= ratio);
+        m.drives.iter().for_each(|d| state.x[d.state + 1] *= ratio);
+        state
     }
 
     fn guess(&self) -> Steady {
