@@ -59,10 +59,8 @@ struct Problem<'a> {
 /// `EngineError::Equilibrium` when Newton's method does not converge.
 pub fn steady(m: &Model, wiring: Option<&Wiring>, start: Option<&Steady>) -> Result<Steady, EngineError> {
     let mut problem = Problem::new(m, wiring);
-    if let Some(start) = start {
-        if let Ok(found) = problem.newton(problem.neighbour(start)) {
-            return Ok(found);
-        }
+    if let Some(Ok(found)) = start.map(|near| problem.newton(problem.neighbour(near))) {
+        return Ok(found);
     }
     let curved = matches!(m.track, Course::Uniform(t) if t.curvature != 0.0 || t.cant != 0.0);
     let mut state = problem.guess();
