@@ -75,3 +75,14 @@ def test_each_state_of_a_sweep_is_found_from_the_one_before() -> None:
     assert swept[1].iterations < swept[0].iterations
     alone = steady_state(scenarios[2], at="500 m")
     assert swept[2].values["bogie1.wheelset1.y"] == pytest.approx(alone.values["bogie1.wheelset1.y"], rel=1e-8)
+
+
+def test_an_unstable_state_says_so() -> None:
+    case = CASES[1800.0]
+    scenario = kl.Scenario(kl.library.vehicle("manchester_coach"), case.track, speed=case.speed)
+    steady = steady_state(scenario, at=0.5 * case.track.length)
+    assert steady.growth > 1.0
+    assert "unstable" in steady.warnings[0]
+    calm = steady_state(scenario.replace(speed=60.0))
+    assert calm.growth < -0.1
+    assert calm.warnings == ()

@@ -9,6 +9,7 @@ use crate::error::{EngineError, Fault};
 use crate::excitation::Excitation;
 use crate::integrate::Etdrk4;
 use crate::model::Model;
+use crate::pass::Pass;
 use crate::rates::{Workspace, rates};
 use crate::spec::Spec;
 use crate::steady::{Steady, steady};
@@ -75,7 +76,14 @@ fn begin(m: &Model, wired: Option<&mut Wired>) -> Result<(Vec<f64>, Vec<f64>), E
         let wiring = wired.as_ref().map(|w| Wiring::of(m, w.controller.diagram().clone())).transpose()?;
         let Steady { x, inputs, integrals, .. } = steady(m, wiring.as_ref(), None)?;
         if let Some(wired) = wired {
+            // settled before anything excites the vehicle, so that the first sample is a step like every other
+            let mut pass = Pass::<f64>::new(m, None);
+            pass.x.copy_from_slice(&x);
+            pass.inputs.copy_from_slice(&inputs);
+            pass.evaluate(m, None).map_err(|fault| EngineError::Linear { fault })?;
             wired.controller.start_with(&integrals);
+            wired.sample(&mut pass.row, true).map_err(|fault| EngineError::Linear { fault })?;
+            wired.settled = true;
         }
         return Ok((x, inputs));
     }
@@ -90,6 +98,8 @@ struct Wired {
     driven: Vec<usize>,
     values: Vec<f64>,
     every: usize,
+    /// Whether it has its steady state already.
+    settled: bool,
 }
 
 /// Runs a compiled model.
@@ -140,7 +150,7 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
                 channels::fill(m, &x, &inputs, &w, &mut row);
             }
             match &mut wired {
-                Some(c) if sampled => c.sample(&mut row, k == 0),
+                Some(c) if sampled => c.sample(&mut row, k == 0 && !c.settled),
                 _ => Ok(()),
             }
         });
@@ -185,7 +195,7 @@ impl Wired {
     fn new(m: &Model, controller: Controller) -> Result<Self, EngineError> {
         let Wiring { measured, driven, .. } = Wiring::of(m, controller.diagram().clone())?;
         let every = (controller.sample_time() / m.run.step).round() as usize;
-        Ok(Self { values: vec![0.0; measured.len()], controller, measured, driven, every })
+        Ok(Self { values: vec![0.0; measured.len()], controller, measured, driven, every, settled: false })
     }
 
     /// Measures, steps the controller and writes its probes behind the channels of the row.

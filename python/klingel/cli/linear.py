@@ -53,6 +53,7 @@ def modes(
 ) -> None:
     """Modes of a vehicle: frequency, damping, what moves and what strains."""
     _check(out, "page", "picture")
+    _check_table(table)
     made = scenario_of(scenario, vehicle, speed, control, settings, without)
 
     from klingel.linear.modes import modes as modes_of
@@ -99,7 +100,9 @@ def rootlocus(
     parameter: Annotated[
         str, typer.Option(help="speed, conicity, friction, vehicle.yaw_damper.damping, control.frequency ...")
     ] = "speed",
-    start: Annotated[str, typer.Option("--from", help="First value, with its unit.")] = "15 m/s",
+    start: Annotated[
+        str, typer.Option("--from", help="First value, with its unit; speeds above the base speed of the drives.")
+    ] = "15 m/s",
     end: Annotated[str, typer.Option("--to", help="Last value, with its unit.")] = "80 m/s",
     points: Annotated[int, typer.Option(min=2, help="Values, evenly spaced.")] = 60,
     out: Annotated[Path, typer.Option(help="Picture (.png, .svg).", dir_okay=False)] = Path("rootlocus.png"),
@@ -110,6 +113,7 @@ def rootlocus(
     Every new conicity compiles its contact table first, which takes some seconds and is kept.
     """
     _check(out, "picture")
+    _check_table(table)
     made = scenario_of(
         scenario, vehicle, speed or _speed_that_varies(scenario, parameter, start), control, settings, without
     )
@@ -166,7 +170,9 @@ def critical_speed(
     settings: Setting = None,
     without: Without = None,
     plant: Plant = False,
-    lowest: Annotated[str, typer.Option(help="Where the search begins.")] = "10 m/s",
+    lowest: Annotated[
+        str, typer.Option(help="Where the search begins; above the base speed of the drives, where there are any.")
+    ] = "10 m/s",
     highest: Annotated[str, typer.Option(help="Where it ends.")] = "120 m/s",
     nonlinear: Annotated[
         bool, typer.Option("--nonlinear", help="Also the limit cycle: runs that slow down and at constant speed.")
@@ -179,6 +185,7 @@ def critical_speed(
 ) -> None:
     """Linear critical speed of a vehicle, and with --nonlinear that of its limit cycle with the bifurcation diagram."""
     _check(out, "picture")
+    _check_table(table)
     made = scenario_of(scenario, vehicle, None if scenario else lowest, control, settings, without)
 
     from klingel.linear.critical import critical_speed as find
@@ -201,6 +208,8 @@ def critical_speed(
     if cycles is not None:
         none = "none: comes to rest at every speed"
         found["nonlinear critical speed"] = f"{3.6 * cycles.speed:.1f} km/h" if cycles.speed else none
+        if cycles.speed and critical.speed and cycles.speed >= critical.speed:
+            found["limit cycles"] = "only above the linear speed, to the resolution of the runs: a soft onset"
 
     import pandas as pd
 
@@ -286,6 +295,13 @@ def _check(out: Path, *kinds: Literal["page", "picture"]) -> None:
         raise InputError.single("out", str(out), f"is no {' or '.join(kinds)}", remedy=f"end it in {', '.join(ends)}")
     if not out.parent.is_dir():
         raise InputError.single("out", str(out), "has no folder to be written to", remedy="make it, or choose another")
+
+
+def _check_table(table: Path | None) -> None:
+    from klingel.errors import InputError
+
+    if table is not None and not table.parent.is_dir():
+        raise InputError.single("table", str(table), "has no folder to be written to", remedy="make it first")
 
 
 @contextmanager

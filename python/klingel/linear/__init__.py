@@ -4,9 +4,13 @@ Equations beside the code and in docs/theory/linear.md."""
 from klingel.linear.critical import CriticalSpeed, critical_speed
 from klingel.linear.limit_cycle import Bifurcation, bifurcation
 from klingel.linear.locus import RootLocus, root_locus
+from klingel.linear.measured import measured_response
 from klingel.linear.model import LinearModel, Signal
 from klingel.linear.modes import Mode, modes
 from klingel.linear.operating import Steady, steady_spec, steady_state, steady_states
+from klingel.linear.random import random_response
+from klingel.linear.response import frequency_response, irregularity
+from klingel.linear.sensitivity import eigenvalue_sensitivities, steady_sensitivities
 from klingel.linear.statespace import linearise
 
 __all__ = [
@@ -19,9 +23,15 @@ __all__ = [
     "Steady",
     "bifurcation",
     "critical_speed",
+    "eigenvalue_sensitivities",
+    "frequency_response",
+    "irregularity",
     "linearise",
+    "measured_response",
     "modes",
+    "random_response",
     "root_locus",
+    "steady_sensitivities",
     "steady_spec",
     "steady_state",
     "steady_states",

@@ -28,14 +28,15 @@ SPEED_RESOLUTION = 1e-3
 SLOWEST = 0.1
 """Frequency from which an eigenvalue is one of an oscillation that counts [Hz]."""
 
-Outcome = Literal["found", "stable throughout", "unstable throughout"]
+Outcome = Literal["found", "stable throughout", "unstable at the lowest", "unstable throughout"]
 
 
 @dataclass(frozen=True, eq=False)
 class CriticalSpeed:
     """Where a vehicle becomes unstable, and the sweep that led there.
 
-    outcome: "found", or that it is stable, or unstable, at every speed looked at; speed [m/s], frequency [Hz] and mode
+    outcome: "found", or that it is stable, or unstable, at every speed looked at, or unstable at the lowest of them (an
+    edge lies below it, whatever follows above); speed [m/s], frequency [Hz] and mode
     at the edge (without `found`: None, and those of the least damped mode at the speed nearest to the edge);
     speeds (k) [m/s]; growth (k): largest real part of those that count [1/s]; damping (k), frequencies (k) [Hz]: of the
     mode that has it.
@@ -130,8 +131,10 @@ def _edge(
 ) -> tuple[Outcome, float]:
     """Where the growth first becomes positive; without such a place, the end of the sweep nearest to it."""
     positive = growth > 0.0
+    if positive[0]:
+        return ("unstable throughout" if positive.all() else "unstable at the lowest"), float(speeds[0])
     rises = np.flatnonzero(~positive[:-1] & positive[1:])
     if rises.size == 0:
-        return ("unstable throughout", float(speeds[0])) if positive[0] else ("stable throughout", float(speeds[-1]))
+        return "stable throughout", float(speeds[-1])
     low, high = float(speeds[rises[0]]), float(speeds[rises[0] + 1])
     return "found", float(brentq(growth_at, low, high, xtol=SPEED_RESOLUTION))

@@ -21,6 +21,9 @@ from klingel.units import Quantity, to_si
 if TYPE_CHECKING:
     from klingel._core import OperatingPoint
 
+UNSTABLE = 1e-3
+"""Growth above which a steady state is called unstable [1/s]."""
+
 ENDLESS = 10_000.0
 """Length of the track of one curvature that controllers with a database are made for [m]."""
 
@@ -69,13 +72,15 @@ def solve(spec: Spec, near: OperatingPoint | None = None) -> OperatingPoint:
 class Steady:
     """Steady state: value of every channel (SI; names as in a run, arc lengths from the middle of the vehicle).
 
-    values: by channel; units: by channel; warnings: elements near a kink; iterations: Newton steps.
+    values: by channel; units: by channel; warnings: that it is unstable, elements near a kink; iterations: Newton
+    steps; growth: largest real part of the eigenvalues there [1/s], controllers closed.
     """
 
     values: pd.Series[float]
     units: dict[str, str]
     warnings: tuple[str, ...]
     iterations: int
+    growth: float
 
 
 def steady_state(scenario: Scenario, *, at: Quantity | None = None) -> Steady:
@@ -97,6 +102,8 @@ def steady_state(scenario: Scenario, *, at: Quantity | None = None) -> Steady:
 def steady_states(scenarios: Sequence[Scenario], *, at: Quantity | None = None) -> Iterator[Steady]:
     """Steady states of one vehicle over speed, radius, friction ..., each found from the one before.
 
+    Where several exist the branch depends on the way; a jump in the values is a change of branch.
+
     Errors: as `steady_state`, at the scenario that has none.
     """
     near: OperatingPoint | None = None
@@ -109,7 +116,22 @@ def read(raw: dict[str, Any]) -> Steady:
     """Values of the outputs of a raw linear model."""
     names = [name for name, _ in raw["outputs"]]
     values = pd.Series(np.asarray(raw["y"]), index=pd.Index(names, name="channel"))
-    return Steady(values, dict(raw["outputs"]), tuple(raw["kinks"]), raw["iterations"])
+    growth = growth_of(raw)
+    unstable = (f"unstable: departures grow with {growth:.2g} 1/s, a run leaves it",) if growth > UNSTABLE else ()
+    return Steady(values, dict(raw["outputs"]), (*unstable, *raw["kinks"]), raw["iterations"], growth)
+
+
+def growth_of(raw: dict[str, Any]) -> float:
+    """Largest real part of the eigenvalues [1/s], controllers closed; the free arc length, which is nil, left out."""
+    from klingel.linear.statespace import of_raw
+
+    model = of_raw(raw, "", 0.0)
+    values = np.linalg.eigvals(model.A)
+    free = np.argmin(np.abs(values if model.sample_time is None else values - 1.0))
+    rest = np.delete(values, free)
+    if model.sample_time is not None:
+        return float(np.log(np.abs(rest).max()) / model.sample_time)
+    return float(rest.real.max())
 
 
 __all__ = ["InputError", "Steady", "endless", "solve", "steady_spec", "steady_state", "steady_states"]
