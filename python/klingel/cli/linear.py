@@ -64,7 +64,7 @@ def modes(
     with _working("operating point"):
         linear = Sweep(at=at, controllers=not plant)(made)
         found = modes_of(linear.model, linear.spec, plant=linear.plant)
-    title, where = f"Modes of {made.vehicle.name}", _where(made, at, plant)
+    title, where = f"Modes of {made.vehicle.name}", _where(made, at, plant, settings=settings, without=without)
     if out.suffix in ENDS["page"]:
         from klingel.report.modes import modes_report
 
@@ -135,7 +135,7 @@ def rootlocus(
 
         locus = root_locus(made, parameter, values, at=at, controllers=not plant, step=tell)
     seconds = time.perf_counter() - begun
-    where = _where(made, at, plant, speed=parameter != "speed")
+    where = _where(made, at, plant, settings=settings, without=without, speed=parameter != "speed")
     title = f"{made.vehicle.name} over {parameter}" + (f", {where}" if where else "")
     _draw(locus_figure(locus, title=title), out)
     rows = [
@@ -197,7 +197,7 @@ def critical_speed(
         cycles = None
         if nonlinear:
             cycles = bifurcation(made, highest=begin, lowest=lowest, linear=critical, step=status.update)
-    where = _where(made, None, plant, speed=False)
+    where = _where(made, None, plant, settings=settings, without=without, speed=False)
     title = made.vehicle.name + (f", {where}" if where else "")
     _draw(critical_figure(critical, title=title, bifurcation=cycles), out)
     mode = critical.mode
@@ -279,10 +279,19 @@ def _speed_that_varies(file: Path | None, parameter: str, start: str) -> str | N
     return start if file is None and parameter == "speed" else None
 
 
-def _where(made: Scenario, at: str | None, plant: bool, *, speed: bool = True) -> str:
-    """The operating point in words."""
+def _where(
+    made: Scenario,
+    at: str | None,
+    plant: bool,
+    *,
+    settings: list[str] | None,
+    without: list[str] | None,
+    speed: bool = True,
+) -> str:
+    """The operating point, and what was changed of the vehicle, in words."""
     control = "" if made.control is None else f"{type(made.control).__name__}{', loops open' if plant else ''}"
     words = [f"{3.6 * made.speed:.0f} km/h" if speed else "", control, f"at {at} of its track" if at else ""]
+    words += [f"without {table}" for table in without or ()] + list(settings or ())
     return ", ".join(word for word in words if word)
 
 

@@ -81,8 +81,9 @@ def critical_speed(
         raise InputError.single(
             "highest", highest, f"must exceed the lowest speed {ends[0]:g} m/s", remedy="give a range"
         )
-    if points < 2:
-        raise InputError.single("points", points, "make no sweep", remedy="give 2 or more")
+    given: object = points
+    if not isinstance(given, int) or points < 2:
+        raise InputError.single("points", points, "make no sweep", remedy="give a whole number, 2 or more")
 
     sweep = Sweep(at=at, controllers=controllers)
 

@@ -87,6 +87,8 @@ def root_locus(
     are done and how many there are. Errors: InputError for an unknown parameter, and as `klingel.linearise`.
     """
     unit = parameters.unit(scenario, parameter)
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        raise InputError.single("values", values, "is no series of values", remedy=f"give some of {parameter} [{unit}]")
     numbers = np.array([to_si(value, unit, key=parameter) for value in values])
     if numbers.size == 0:
         raise InputError.single("values", [], "holds no value", remedy=f"give values of {parameter} [{unit}]")

@@ -50,7 +50,9 @@ def reduced(model: LinearModel, order: int, *, scales: Mapping[str, float] | Non
     """
     parts = split(model, scales)
     fixed, most = len(parts.kept[0]), len(model.A)
-    if isinstance(order, bool) or not fixed <= order <= most:
+    given: object = order
+    whole = isinstance(given, int | np.integer) and not isinstance(given, bool)
+    if not (whole and fixed <= order <= most):
         remedy = f"give a whole number from {fixed} (states that do not decay) to {most}"
         raise InputError.single("order", order, "is no order for this model", remedy=remedy)
     count = min(order - fixed, int(np.sum(parts.hankel > 0.0)))

@@ -145,6 +145,8 @@ def locus_figure(locus: RootLocus, *, title: str, highest: float = HIGHEST) -> F
         )
         _ratios(ratio, locus, values, highest)
         ratio.set_xlabel(f"{locus.parameter}  [{unit}]" if unit != "1" else locus.parameter)
+        if np.abs(values).max() >= 1e4:
+            ratio.ticklabel_format(axis="x", style="sci", scilimits=(0, 0), useMathText=True)
         figure.legend(
             *ratio.get_legend_handles_labels(), loc="outside lower right", ncols=2, handlelength=2.8, columnspacing=1.2
         )
