@@ -53,23 +53,28 @@ pub fn linearise<'py>(py: Python<'py>, spec: &str) -> PyResult<Bound<'py, PyDict
     operating_point(py, spec, None)?.linearise(py)
 }
 
-type Matrix<'py> = Bound<'py, PyArray2<f64>>;
-
-fn matrix(py: Python<'_>, values: Vec<f64>, rows: usize, columns: usize) -> PyResult<Matrix<'_>> {
-    PyArray1::from_vec(py, values).reshape([rows, columns])
+/// Writes a, b, c, d of n states, m inputs and p outputs.
+fn set_matrices(
+    py: Python<'_>,
+    into: &Bound<'_, PyDict>,
+    [a, b, c, d]: [Vec<f64>; 4],
+    [n, m, p]: [usize; 3],
+) -> PyResult<()> {
+    for (name, values, rows, columns) in [("a", a, n, n), ("b", b, n, m), ("c", c, p, n), ("d", d, p, m)] {
+        let matrix: Bound<'_, PyArray2<f64>> = PyArray1::from_vec(py, values).reshape([rows, columns])?;
+        into.set_item(name, matrix)?;
+    }
+    Ok(())
 }
 
 fn plant(py: Python<'_>, model: LinearModel) -> PyResult<Bound<'_, PyDict>> {
     let LinearModel { states, inputs, outputs, a, b, c, d, x, u, y, control, kinks, iterations } = model;
-    let (n, m, p) = (states.len(), inputs.len(), outputs.len());
+    let sizes = [states.len(), inputs.len(), outputs.len()];
     let result = PyDict::new(py);
     result.set_item("states", states)?;
     result.set_item("inputs", inputs)?;
     result.set_item("outputs", outputs)?;
-    result.set_item("a", matrix(py, a, n, n)?)?;
-    result.set_item("b", matrix(py, b, n, m)?)?;
-    result.set_item("c", matrix(py, c, p, n)?)?;
-    result.set_item("d", matrix(py, d, p, m)?)?;
+    set_matrices(py, &result, [a, b, c, d], sizes)?;
     result.set_item("x", x.into_pyarray(py))?;
     result.set_item("u", u.into_pyarray(py))?;
     result.set_item("y", y.into_pyarray(py))?;
@@ -81,16 +86,13 @@ fn plant(py: Python<'_>, model: LinearModel) -> PyResult<Bound<'_, PyDict>> {
 
 fn controller(py: Python<'_>, control: LinearControl) -> PyResult<Bound<'_, PyDict>> {
     let LinearControl { sample_time, states, measured, driven, a, b, c, d, z } = control;
-    let (n, m, p) = (states.len(), measured.len(), driven.len());
+    let sizes = [states.len(), measured.len(), driven.len()];
     let result = PyDict::new(py);
     result.set_item("sample_time", sample_time)?;
     result.set_item("states", states)?;
     result.set_item("measured", measured)?;
     result.set_item("driven", driven)?;
-    result.set_item("a", matrix(py, a, n, n)?)?;
-    result.set_item("b", matrix(py, b, n, m)?)?;
-    result.set_item("c", matrix(py, c, p, n)?)?;
-    result.set_item("d", matrix(py, d, p, m)?)?;
+    set_matrices(py, &result, [a, b, c, d], sizes)?;
     result.set_item("z", z.into_pyarray(py))?;
     Ok(result)
 }

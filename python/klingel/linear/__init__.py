@@ -7,11 +7,12 @@ from klingel.linear.locus import RootLocus, root_locus
 from klingel.linear.measured import measured_response
 from klingel.linear.model import LinearModel, Signal
 from klingel.linear.modes import Mode, modes
-from klingel.linear.operating import Steady, steady_spec, steady_state, steady_states
+from klingel.linear.operating import steady_spec
 from klingel.linear.random import random_response
 from klingel.linear.response import frequency_response, irregularity
 from klingel.linear.sensitivity import eigenvalue_sensitivities, steady_sensitivities
 from klingel.linear.statespace import linearise
+from klingel.linear.steady import Steady, steady_state, steady_states
 
 __all__ = [
     "Bifurcation",

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from klingel.errors import InputError
 from klingel.linear.model import LinearModel
-from klingel.linear.operating import read, solve, steady_spec
+from klingel.linear.operating import solve, steady_spec
 from klingel.linear.parameters import get, names, replace, unit
 from klingel.linear.statespace import of_raw
+from klingel.linear.steady import values_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -208,7 +209,7 @@ def steady_sensitivities(
     unknown channel; SimulationError where there is no steady state.
     """
     near = solve(steady_spec(scenario, at=at))
-    base = read(near.linearise()).values  # noqa: PD011
+    base = values_of(near.linearise())
     unknown = [channel for channel in channels if channel not in base.index]
     if unknown:
         raise InputError.single("channels", unknown[0], "is no channel", remedy="see the steady state's values")
@@ -217,8 +218,8 @@ def steady_sensitivities(
         value = get(scenario, path)
 
         def steady(p: float, path: str = path) -> Real:
-            state = read(solve(steady_spec(replace(scenario, path, p), at=at), near).linearise())
-            return np.asarray(state.values.loc[list(channels)], dtype=np.float64)  # noqa: PD011
+            state = values_of(solve(steady_spec(replace(scenario, path, p), at=at), near).linearise())
+            return np.asarray(state.loc[list(channels)], dtype=np.float64)
 
         slope = derivative(steady, value)
         for channel, change, error in zip(channels, slope.value, slope.error, strict=True):

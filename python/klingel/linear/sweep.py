@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from klingel.errors import SimulationError
 from klingel.linear.model import LinearModel
 from klingel.linear.operating import solve, steady_spec
 from klingel.linear.statespace import close, of_raw
@@ -43,7 +42,7 @@ class Sweep:
     def __call__(self, scenario: Scenario) -> Linearised:
         """The models of a scenario; errors: SimulationError where there is no steady state, InputError."""
         spec = steady_spec(scenario, at=self.at)
-        self._near = self._solved(spec)
+        self._near = solve(spec, self._near)
         raw = self._near.linearise()
         plant = of_raw(raw, spec["name"], spec["speed"], controllers=False)
         control = raw["control"]
@@ -52,12 +51,3 @@ class Sweep:
         driven = [plant.inputs[i].name for i in control["driven"]]
         commanded = plant.select(inputs=driven)
         return Linearised(close(commanded, control | {"driven": list(range(len(driven)))}), plant, spec)
-
-    def _solved(self, spec: Spec) -> OperatingPoint:
-        """From the neighbour if that leads there, else from the design position."""
-        if self._near is not None:
-            try:
-                return solve(spec, self._near)
-            except SimulationError:
-                pass
-        return solve(spec)
