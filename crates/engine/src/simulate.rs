@@ -83,6 +83,7 @@ fn begin(m: &Model, wired: Option<&mut Wired>) -> Result<(Vec<f64>, Vec<f64>), E
             pass.evaluate(m, None).map_err(|fault| EngineError::Linear { fault })?;
             wired.controller.start_with(&integrals);
             wired.sample(&mut pass.row, true).map_err(|fault| EngineError::Linear { fault })?;
+            wired.controller.before_start();
             wired.settled = true;
         }
         return Ok((x, inputs));

@@ -5,6 +5,8 @@ from klingel.control.common import Timing
 from klingel.control.feedforward import ContactDesign
 from klingel.control.irw_like import IRWLike
 from klingel.control.passive import Passive
+from klingel.control.slip import SlipControl
 from klingel.control.solid_like import SolidLike
+from klingel.control.traction import Traction
 
-__all__ = ["ContactDesign", "IRWLike", "Passive", "SolidLike", "Timing"]
+__all__ = ["ContactDesign", "IRWLike", "Passive", "SlipControl", "SolidLike", "Timing", "Traction"]

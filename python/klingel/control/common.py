@@ -13,7 +13,6 @@ import numpy as np
 from klingel.control.diagram import Diagram
 from klingel.control.discrete import Section, low_pass, slope_low_pass
 from klingel.control.feedforward import ContactDesign, SteeringGeometry, attack_angle_table
-from klingel.drives import OperatingPoint, operating_point
 from klingel.errors import InputError
 from klingel.track import CANT_BASE
 
@@ -62,26 +61,23 @@ WHEELSETS = tuple(Wheelset(bogie, number) for bogie in (1, 2) for number in (1, 
 
 @dataclass(frozen=True)
 class Plant:
-    """The numbers of one vehicle at its speed that a strategy is made from."""
+    """The numbers of one vehicle that a strategy is made from."""
 
     geometry: SteeringGeometry
     drive: Drive
     steering: SteeringActuator
     radius: float
-    point: OperatingPoint
 
     @classmethod
-    def of(cls, vehicle: Vehicle, speed: float) -> Plant:
-        """Errors: InputError for a vehicle without drives or steering actuators, or a speed out of their reach."""
+    def of(cls, vehicle: Vehicle) -> Plant:
+        """Errors: InputError for a vehicle without drives or steering actuators."""
         for key in ("drive", "steering"):
             if getattr(vehicle, key) is None:
                 remedy = f"{vehicle.name} is passive; take a vehicle with [drive] and [steering], or no control"
                 raise InputError.single(key, None, "is missing", remedy=remedy)
         assert vehicle.drive is not None
         assert vehicle.steering is not None
-        point = operating_point(vehicle, speed)
-        radius = vehicle.geometry.wheel_radius
-        return cls(SteeringGeometry.of(vehicle), vehicle.drive, vehicle.steering, radius, point)
+        return cls(SteeringGeometry.of(vehicle), vehicle.drive, vehicle.steering, vehicle.geometry.wheel_radius)
 
     @property
     def speed_ratio(self) -> float:
@@ -254,23 +250,12 @@ def command_steering(d: Diagram, plant: Plant, w: Wheelset, moment: str, timing:
     d.probe(f"{w.name}.steering_moment_command", "N m", sent)
 
 
-def command_motors(d: Diagram, plant: Plant, w: Wheelset, voltage: str, timing: Timing) -> None:
-    """VaL = x VaMax + u and VaR = x VaMax - u, Eqs (22) and (23), with |u| at most (1 - x) VaMax."""
-    limit = plant.steering_voltage_max
-    limited = d.saturation(f"{w.name}.u.limited", voltage, -limit, limit)
-    sent = d.delay(f"{w.name}.u.sent", limited, timing.computation_samples)
-    for side, sign in (("left", 1.0), ("right", -1.0)):
-        total = d.sum(f"{w.name}.Va.{side}", {sent: sign}, bias=plant.point.armature_voltage)
-        d.command(f"{w.name}.{side}.armature_voltage", total)
-    d.probe(f"{w.name}.steering_voltage", "V", sent)
-
-
-def check_positive(owner: object, names: Sequence[str]) -> None:
+def check_positive(owner: object, names: Sequence[str], *, key: str = "control") -> None:
     """Errors: InputError naming the parameter of a strategy that is no number or not above zero."""
     for name in names:
         value = getattr(owner, name)
         if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
             remedy = "give a plain number in SI; only scenario files take strings with units here"
-            raise InputError.single(f"control.{name}", value, "is no number", remedy=remedy)
+            raise InputError.single(f"{key}.{name}", value, "is no number", remedy=remedy)
         if not value > 0.0:
-            raise InputError.single(f"control.{name}", value, "must be positive", remedy="give a value above zero")
+            raise InputError.single(f"{key}.{name}", value, "must be positive", remedy="give a value above zero")

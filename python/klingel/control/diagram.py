@@ -11,6 +11,9 @@ from klingel.control.discrete import Section
 Gain = float | str
 """A number, or the name of the signal that carries it."""
 
+BEYOND = 1e12
+"""Larger than any signal in SI units: a limit that is none."""
+
 
 class Diagram:
     """A block diagram under construction, blocks in execution order.
@@ -36,6 +39,14 @@ class Diagram:
             self._measurements.append(channel)
         return channel
 
+    def has(self, name: str) -> bool:
+        """Whether a block of this name exists."""
+        return any(block["name"] == name for block in self._blocks)
+
+    def clock(self) -> str:
+        """The time since the start of the run [s]."""
+        return "clock" if self.has("clock") else self._add("clock", "clock")
+
     def sum(self, name: str, terms: Mapping[str, Gain], *, bias: float = 0.0) -> str:
         """bias + sum of gain times signal."""
         rows = [{"signal": signal, "gain": gain} for signal, gain in terms.items()]
@@ -54,20 +65,41 @@ class Diagram:
         rows = [{"b": list(section.b), "a": list(section.a)} for section in sections]
         return self._add("filter", name, input=signal, sections=rows)
 
-    def pi(self, name: str, error: str, *, proportional: Gain, integral: Gain, limit: Gain | None = None) -> str:
-        """PI controller; its output stays within +-limit and its integral does not wind up there."""
-        lower: Gain | None = None
+    def pi(
+        self,
+        name: str,
+        error: str,
+        *,
+        proportional: Gain,
+        integral: Gain,
+        limit: Gain | None = None,
+        within: tuple[Gain, Gain] | None = None,
+    ) -> str:
+        """PI controller; its output stays within +-limit, or `within` two limits, and does not wind up there."""
+        lower, upper = within or (None, limit)
         if isinstance(limit, str):
             lower = self.sum(f"{name}.lower", {limit: -1.0})
         elif limit is not None:
             lower = -limit
         return self._add(
-            "pi", name, input=error, proportional=proportional, integral=integral, lower=lower, upper=limit
+            "pi", name, input=error, proportional=proportional, integral=integral, lower=lower, upper=upper
         )
 
     def saturation(self, name: str, signal: str, lower: Gain, upper: Gain) -> str:
         """The signal held between two limits."""
         return self._add("saturation", name, input=signal, lower=lower, upper=upper)
+
+    def larger(self, name: str, one: str, other: str) -> str:
+        """The larger of two signals."""
+        return self._add("saturation", name, input=one, lower=other, upper=BEYOND)
+
+    def smaller(self, name: str, one: str, other: str) -> str:
+        """The smaller of two signals."""
+        return self._add("saturation", name, input=one, lower=-BEYOND, upper=other)
+
+    def rate_limit(self, name: str, signal: str, rate: float) -> str:
+        """The signal, followed no faster than a rate [its unit/s] up and down."""
+        return self._add("rate_limit", name, input=signal, rising=rate, falling=rate)
 
     def delay(self, name: str, signal: str, samples: int) -> str:
         """The signal some samples ago; the signal itself for none."""

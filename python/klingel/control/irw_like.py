@@ -14,7 +14,6 @@ from klingel.control.common import (
     Timing,
     Wheelset,
     check_positive,
-    command_motors,
     command_steering,
     database_curvature,
     database_curve,
@@ -30,6 +29,8 @@ from klingel.control.common import (
 from klingel.control.diagram import Diagram
 from klingel.control.discrete import low_pass
 from klingel.control.feedforward import ContactDesign
+from klingel.control.motors import Motors
+from klingel.control.traction import Traction
 from klingel.errors import InputError, nearest
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ class IRWLike:
     roll_frequency: low-pass of the wheelset's roll gyro [Hz]; steering does not roll a wheelset, so it may be fast.
     sensor_frequency: low-pass of the inertial sensors [Hz], above the body's own modes near 1 Hz.
     timing: sampling and delays. contact: what the design assumes of wheel and rail.
+    traction: loop that drives and brakes the vehicle through the same motors; None holds their field and mean voltage.
 
     >>> from klingel import library
     >>> from klingel.track import Track
@@ -77,6 +79,7 @@ class IRWLike:
     sensor_frequency: float = 2.0
     timing: Timing = field(default_factory=Timing)
     contact: ContactDesign = field(default_factory=ContactDesign)
+    traction: Traction | None = None
 
     def __post_init__(self) -> None:
         if self.curvature not in get_args(Curvature):
@@ -91,13 +94,15 @@ class IRWLike:
 
         Errors: InputError for a vehicle without drives or steering actuators.
         """
-        plant = Plant.of(vehicle, speed)
+        plant = Plant.of(vehicle)
+        motors = Motors.of(vehicle, plant, self.timing, self.traction, speed)
         d = Diagram(sample_time=self.timing.sample_time)
+        motors.prepare(d)
         proportional = scheduled(d, "steering.gain", lambda v: self._steering_gain(plant, v))
         integral = d.sum("steering.integral_gain", {proportional: 1.0 / self.integral_time})
         sense_inertia(d, plant, self.timing, frequency=self.sensor_frequency)
         for wheelset in WHEELSETS:
-            self._torque_loop(d, plant, wheelset)
+            self._torque_loop(d, plant, motors, wheelset)
             self._speed_error(d, plant, wheelset, track)
         if self.curvature == "gyro":
             sense_curve(d, plant, self.contact, self.timing, frequency=self.gyro_frequency)
@@ -110,7 +115,7 @@ class IRWLike:
         stiffness = plant.geometry.yaw_stiffness * plant.radius**2 / self.contact.conicity
         return 2.0 * math.pi * self.frequency * stiffness / speed**2
 
-    def _torque_loop(self, d: Diagram, plant: Plant, w: Wheelset) -> None:
+    def _torque_loop(self, d: Diagram, plant: Plant, motors: Motors, w: Wheelset) -> None:
         """u = K(s) (0 - (IaL - IaR)/2): equal armature currents are equal torques; K cancels the armature's pole."""
         left, right = (d.measure(f"{w.name}.{side}.armature_current") for side in ("left", "right"))
         now = d.sum(f"{w.name}.Id.now", {left: -0.5, right: 0.5})
@@ -123,7 +128,7 @@ class IRWLike:
             integral=crossover * plant.drive.armature_resistance,
             limit=plant.steering_voltage_max,
         )
-        command_motors(d, plant, w, voltage, self.timing)
+        motors.command(d, w, voltage)
 
     def _speed_error(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
         """lambda r/r0 - wd [rad/s], r the yaw rate of the wheelset or of the track: -V gamma y/r0^2."""

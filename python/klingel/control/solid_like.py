@@ -14,12 +14,10 @@ from klingel.control.common import (
     Timing,
     Wheelset,
     check_positive,
-    command_motors,
     command_steering,
     database_curvature,
     database_curve,
     gyroscopic_moment,
-    scheduled,
     sense_inertia,
     speed_difference,
     steering_feedforward,
@@ -27,6 +25,8 @@ from klingel.control.common import (
 from klingel.control.diagram import Diagram
 from klingel.control.discrete import lead, notch
 from klingel.control.feedforward import ContactDesign
+from klingel.control.motors import Motors
+from klingel.control.traction import Traction
 
 if TYPE_CHECKING:
     from klingel.track import Track
@@ -46,6 +46,7 @@ class SolidLike:
     yaw_frequency: crossover of the yaw-moment loop [Hz], below the hunting band of 2 to 8 Hz.
     sensor_frequency: low-pass of the inertial sensors [Hz], above the body's own modes near 1 Hz.
     timing: sampling and delays. contact: what the design assumes of wheel and rail.
+    traction: loop that drives and brakes the vehicle through the same motors; None holds their field and mean voltage.
 
     >>> from klingel import library
     >>> from klingel.track import Track
@@ -65,6 +66,7 @@ class SolidLike:
     sensor_frequency: float = 2.0
     timing: Timing = field(default_factory=Timing)
     contact: ContactDesign = field(default_factory=ContactDesign)
+    traction: Traction | None = None
 
     def __post_init__(self) -> None:
         names = (
@@ -83,25 +85,22 @@ class SolidLike:
 
         Errors: InputError for a vehicle without drives or steering actuators.
         """
-        plant = Plant.of(vehicle, speed)
+        plant = Plant.of(vehicle)
+        motors = Motors.of(vehicle, plant, self.timing, self.traction, speed)
         d = Diagram(sample_time=self.timing.sample_time)
-        proportional = scheduled(d, "speed_loop.gain", lambda v: self._voltage_gain(plant, v))
-        integral = d.sum("speed_loop.integral_gain", {proportional: 1.0 / self.integral_time})
+        motors.prepare(d)
         sense_inertia(d, plant, self.timing, frequency=self.sensor_frequency)
         for wheelset in WHEELSETS:
-            self._speed_loop(d, plant, wheelset, track, proportional, integral)
+            self._speed_loop(d, plant, motors, wheelset, track)
             self._yaw_moment_loop(d, plant, wheelset, track)
         return d.spec()
 
-    def _voltage_gain(self, plant: Plant, speed: float) -> float:
-        """Volts per rad/s that make the wanted damping torque through KT/(N Ra)."""
+    def _damping(self, plant: Plant, speed: float) -> float:
+        """Wanted torque of each wheel over the half difference of their speeds [N m s/rad]."""
         coupling = self.coupling * min(1.0, self.coupling_speed / speed)
-        damping = coupling * self.contact.longitudinal_creep * plant.radius**2 / speed
-        return damping * plant.drive.gear_ratio * plant.drive.armature_resistance / plant.point.torque_constant
+        return coupling * self.contact.longitudinal_creep * plant.radius**2 / speed
 
-    def _speed_loop(
-        self, d: Diagram, plant: Plant, w: Wheelset, track: Track, proportional: str, integral: str
-    ) -> None:
+    def _speed_loop(self, d: Diagram, plant: Plant, motors: Motors, w: Wheelset, track: Track) -> None:
         """u = K(s) (lambda V rho/r0 - wd), with the back-EMF of the commanded difference added."""
         ts = self.timing.sample_time
         rho = database_curvature(d, f"{w.name}.rho.here", track, d.measure(f"{w.name}.s"))
@@ -114,9 +113,12 @@ class SolidLike:
         ]
         shaped = d.filter(f"{w.name}.wd.shaped", error, shape)
         limit = plant.steering_voltage_max
+        proportional = motors.gain(d, w, lambda v: self._damping(plant, v))
+        name = f"{proportional}.integral"
+        integral = name if d.has(name) else d.sum(name, {proportional: 1.0 / self.integral_time})
         feedback = d.pi(f"{w.name}.u.feedback", shaped, proportional=proportional, integral=integral, limit=limit)
-        back_emf = plant.point.torque_constant / plant.drive.gear_ratio * plant.speed_ratio
-        command_motors(d, plant, w, d.sum(f"{w.name}.u", {feedback: 1.0, turn: back_emf}), self.timing)
+        back_emf, per_turn = motors.back_emf(d, w, turn)
+        motors.command(d, w, d.sum(f"{w.name}.u", {feedback: 1.0, back_emf: per_turn}))
 
     def _yaw_moment_loop(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
         """Integral control of the total yaw moment on the wheelset to what its spin needs, around the feedforward."""

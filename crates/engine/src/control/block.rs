@@ -68,9 +68,17 @@ impl Pi {
     }
 }
 
+/// When a sample is taken: since the start of the run, and since the sample before \[s\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Instant {
+    pub time: f64,
+    pub interval: f64,
+}
+
 /// One compiled block; slots index the signals of the controller.
 #[derive(Clone, Debug)]
 pub enum Block {
+    Clock,
     Sum { terms: Vec<(usize, Operand)>, bias: f64 },
     Product { factors: Vec<usize> },
     Quotient { numerator: usize, denominator: usize, floor: f64 },
@@ -120,13 +128,20 @@ impl Block {
                 memory.fill(signals[*input]);
                 signals[*input]
             }
-            _ => return self.step(memory, scratch, signals, 0.0),
+            _ => return self.step(memory, scratch, signals, Instant::default()),
         })
     }
 
-    /// The output of this sample, `ts` after the one before.
-    pub fn step<S: Scalar>(&self, memory: &mut [S], scratch: &mut [S], signals: &[S], ts: f64) -> Result<S, Outside> {
+    /// The output of this sample.
+    pub fn step<S: Scalar>(
+        &self,
+        memory: &mut [S],
+        scratch: &mut [S],
+        signals: &[S],
+        Instant { time, interval: ts }: Instant,
+    ) -> Result<S, Outside> {
         Ok(match self {
+            Self::Clock => S::constant(time),
             Self::Sum { terms, bias } => {
                 terms.iter().fold(S::constant(*bias), |sum, &(slot, gain)| sum + gain.value(signals) * signals[slot])
             }
@@ -201,7 +216,7 @@ mod tests {
             self.0.reset(&mut self.1, &mut [], signals, 0.0).unwrap()
         }
         fn step(&mut self, signals: &[f64]) -> f64 {
-            self.0.step(&mut self.1, &mut [], signals, TS).unwrap()
+            self.0.step(&mut self.1, &mut [], signals, Instant { time: 0.0, interval: TS }).unwrap()
         }
     }
 

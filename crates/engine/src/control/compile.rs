@@ -70,6 +70,7 @@ fn compile_block(spec: &BlockSpec, names: &Names) -> Result<Block, ControlError>
     let slot = |signal: &str| names.slot(&place, signal);
     let operand = |p: &Parameter| names.operand(block, p);
     Ok(match spec {
+        BlockSpec::Clock { .. } => Block::Clock,
         BlockSpec::Sum { terms, bias, .. } => {
             let terms = terms.iter().map(|t| Ok((slot(&t.signal)?, operand(&t.gain)?)));
             Block::Sum { terms: terms.collect::<Result<_, _>>()?, bias: finite(block, "bias", *bias)? }

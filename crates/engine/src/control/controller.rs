@@ -72,6 +72,11 @@ impl Controller {
         self.integrals.copy_from_slice(integrals);
     }
 
+    /// Settled before the run: its first sample is a `step`.
+    pub fn before_start(&mut self) {
+        Diagram::before_start(&mut self.memory);
+    }
+
     /// One sample: measurements in (SI, in the order of `measurement_names`), commands and probes out.
     ///
     /// # Errors
@@ -109,6 +114,20 @@ mod tests {
                 "probes": [{{"channel": "u", "unit": "V", "signal": "out"}}]}}"#
         );
         Controller::compile(&serde_json::from_str(&json).unwrap())
+    }
+
+    #[test]
+    fn the_clock_tells_the_time_of_the_run() {
+        let mut c = controller(r#"{"kind": "clock", "name": "out"}"#).unwrap();
+        c.reset(&[0.0, 0.0]).unwrap();
+        assert_eq!(c.commands(), [0.0]);
+        for _ in 0..250 {
+            c.step(&[0.0, 0.0]).unwrap();
+        }
+        assert_eq!(c.commands(), [0.25]);
+        c.before_start();
+        c.step(&[0.0, 0.0]).unwrap();
+        assert_eq!(c.commands(), [0.0]);
     }
 
     const LOOKUP: &str = r#"{"kind": "lookup", "name": "out", "input": "v", "x": [0, 10], "y": [1, 3]}"#;

@@ -1,7 +1,7 @@
 //! A compiled block diagram: one array of signals, filled from the front in the order of the blocks.
 //! It never changes; what it remembers is a `Memory` of numbers, or of dual numbers for steady states and linear models.
 
-use super::block::{Block, Pi};
+use super::block::{Block, Instant, Pi};
 use super::error::ControlError;
 use super::lookup::Outside;
 use super::spec::ControlSpec;
@@ -31,6 +31,8 @@ struct Placed {
 #[derive(Clone, Debug)]
 pub struct Memory<S> {
     pub states: Vec<S>,
+    /// Taken since the start of the run.
+    samples: i64,
     signals: Vec<S>,
     scratch: Vec<S>,
 }
@@ -71,6 +73,7 @@ impl Diagram {
         let scratch = self.blocks.iter().map(|b| b.block.scratch()).max().unwrap_or(0);
         Memory {
             states: vec![S::zero(); states],
+            samples: 0,
             signals: vec![S::zero(); self.measurement_names.len() + self.blocks.len()],
             scratch: vec![S::zero(); scratch],
         }
@@ -101,6 +104,7 @@ impl Diagram {
         measurements: &[S],
         integrals: &[S],
     ) -> Result<(), ControlError> {
+        memory.samples = 0;
         let mut integrals = integrals.iter();
         self.sweep(memory, measurements, |block, states, scratch, signals| {
             let integral = if matches!(block, Block::Pi(_)) { integrals.next().copied() } else { None };
@@ -113,8 +117,14 @@ impl Diagram {
     /// # Errors
     /// A wrong number of measurements, a value that is not finite, an input outside its table.
     pub fn step<S: Scalar>(&self, memory: &mut Memory<S>, measurements: &[S]) -> Result<(), ControlError> {
-        let ts = self.sample_time;
-        self.sweep(memory, measurements, |block, states, scratch, signals| block.step(states, scratch, signals, ts))
+        memory.samples += 1;
+        let now = Instant { time: memory.samples as f64 * self.sample_time, interval: self.sample_time };
+        self.sweep(memory, measurements, |block, states, scratch, signals| block.step(states, scratch, signals, now))
+    }
+
+    /// The next `step` is that of the start.
+    pub fn before_start<S>(memory: &mut Memory<S>) {
+        memory.samples = -1;
     }
 
     fn sweep<S: Scalar>(
@@ -131,7 +141,7 @@ impl Diagram {
             let (name, value) = (self.measurement_names[i].clone(), measurements[i].value());
             return Err(ControlError::Measurement { name, value });
         }
-        let Memory { states, signals, scratch } = memory;
+        let Memory { states, signals, scratch, .. } = memory;
         signals[..offset].copy_from_slice(measurements);
         for (i, Placed { name, block, memory }) in self.blocks.iter().enumerate() {
             let own = &mut states[*memory..*memory + block.states()];

@@ -90,6 +90,8 @@ pub enum Edge {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum BlockSpec {
+    /// Time since the start of the run \[s\].
+    Clock { name: String },
     /// bias + sum of gain * signal.
     Sum {
         name: String,
@@ -142,7 +144,8 @@ impl BlockSpec {
     /// The name of the block and of the signal it writes.
     pub fn name(&self) -> &str {
         match self {
-            Self::Sum { name, .. }
+            Self::Clock { name }
+            | Self::Sum { name, .. }
             | Self::Product { name, .. }
             | Self::Quotient { name, .. }
             | Self::Filter { name, .. }
