@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from klingel.contact import profile_of
-from klingel.drives import operating_point, running_resistance
+from klingel.drives import operating_point, running_resistance, starting_point
 from klingel.scenario import Scenario
 from klingel.track import CANT_BASE, Track
 from klingel.vehicle import Vehicle
@@ -84,9 +84,9 @@ def lower(scenario: Scenario) -> Spec:
         "maxwells": [*_primary_dampers(vehicle, wheels), *_secondary_dampers(vehicle)],
         "stops": [_lateral_stop(vehicle, bogie, x) for bogie, x in _bogies(vehicle)],
         "actuators": list(_actuators(vehicle, wheels)),
-        "drives": list(_drives(vehicle, wheels, scenario.speed)),
+        "drives": list(_drives(scenario, wheels)),
         "drag": _drag(vehicle),
-        "hold": _hold(vehicle),
+        "hold": _hold(vehicle) if scenario.traction is None else None,
         "control": control,
         "run": {
             "duration": scenario.end_time,
@@ -271,11 +271,23 @@ def _actuators(vehicle: Vehicle, wheels: tuple[Axle, ...]) -> Iterator[Spec]:
             }
 
 
-def _drives(vehicle: Vehicle, wheels: tuple[Axle, ...], speed: float) -> Iterator[Spec]:
+def _drives(scenario: Scenario, wheels: tuple[Axle, ...]) -> Iterator[Spec]:
+    vehicle = scenario.vehicle
     drive = vehicle.drive
     if drive is None:
         return
-    point = operating_point(vehicle, speed)
+    traction = scenario.traction
+    if traction is None:
+        point = operating_point(vehicle, scenario.speed)
+        field_current, armature_voltage = point.field_current, point.armature_voltage
+        field = None
+    else:
+        field_current, armature_voltage = starting_point(vehicle, scenario.speed, margin=traction.field_margin)
+        field = {
+            "resistance": drive.field_resistance,
+            "inductance": drive.field_inductance,
+            "voltage_max": drive.field_voltage_max,
+        }
     for axle in wheels:
         for side, _ in SIDES:
             yield {
@@ -285,8 +297,9 @@ def _drives(vehicle: Vehicle, wheels: tuple[Axle, ...], speed: float) -> Iterato
                 "armature_resistance": drive.armature_resistance,
                 "armature_inductance": drive.armature_inductance,
                 "emf_constant": drive.emf_constant,
-                "field_current": point.field_current,
-                "armature_voltage": point.armature_voltage,
+                "field_current": field_current,
+                "field": field,
+                "armature_voltage": armature_voltage,
                 "armature_voltage_max": drive.armature_voltage_max,
                 "gear_ratio": drive.gear_ratio,
                 "gear_sense": -1.0,  # one stage of spur gears turns the motor against the wheel

@@ -10,8 +10,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 import xarray as xr
 
+from klingel.assess.flange import CARRYING_FORCE, flange_contact
 from klingel.assess.header import Course, Header, Wheelset, header_of, values
-from klingel.assess.signals import Mask, Signal, longer_than, low_pass, sliding_mean
+from klingel.assess.signals import Mask, Signal, low_pass, sliding_mean
 from klingel.errors import InputError
 
 INTERVAL_MAX = 2e-3
@@ -23,13 +24,6 @@ AFTER_CURVE = 3.0
 """Maxima end this long after the curve [s]."""
 STEADY_PART = 2.0
 """The steady state is read over this last part of the arc [s]."""
-CARRYING_FORCE = 1.0e3
-"""A steep patch counts when it carries more than this [N]."""
-CARRYING_TIME = 0.1
-"""... for longer than this [s]."""
-FLANGE_ANGLE = math.radians(60.0)
-"""A carrying patch steeper than this lies on the flange, else in the root [rad]. The flank of S1002 has 70 deg; in
-two-point contact the steeper patch of a root contact reaches 50 to 55 deg."""
 
 
 @dataclass(frozen=True)
@@ -225,7 +219,7 @@ def curving(result: xr.Dataset, *, vehicle: str | None = None) -> Assessment:
         q_min_kN=-1e-3 * largest(lambda w: (f"{w.left}.Q", f"{w.right}.Q"), lambda q: -filtered(q)),
         body_lateral_acc_mps2=_max([np.max(body_acceleration[body_window], initial=-np.inf)]),
         spin_work_N=mean_in_arc("spin_work"),
-        flange_contact=_flange_contact(run, header, windows),
+        flange_contact=flange_contact(result, header.wheelsets, windows, run.interval),
         outcome=header.outcome,
         notes=header.notes,
         realtime_factor=header.realtime_factor,
@@ -278,19 +272,6 @@ def _yq_max(run: _Run, header: Header, windows: Mapping[str, Mask]) -> float:
         for wheelset in header.wheelsets
         for wheel, outwards in ((wheelset.left, -1.0), (wheelset.right, 1.0))
     )
-
-
-def _flange_contact(run: _Run, header: Header, windows: Mapping[str, Mask]) -> str:
-    kinds = set()
-    for wheelset in header.wheelsets:
-        for wheel in (wheelset.left, wheelset.right):
-            carrying = (values(run.result, f"{wheel}.steep_force") > CARRYING_FORCE) & windows[wheelset.name]
-            flank = carrying & (values(run.result, f"{wheel}.contact_angle") > FLANGE_ANGLE)
-            if longer_than(flank, run.interval, CARRYING_TIME):
-                kinds.add("flange")
-            elif longer_than(carrying, run.interval, CARRYING_TIME):
-                kinds.add("root")
-    return "flange" if "flange" in kinds else "root" if "root" in kinds else ""
 
 
 def _max(numbers: Iterable[float]) -> float:

@@ -81,7 +81,7 @@ class Header:
         speed: that the run was asked for [m/s].
         gravity: [m/s2].
         friction: coefficient of the first wheel [-].
-        course: of the track.
+        track: as in the spec.
         wheelsets: in the order of the vehicle.
         static_wheel_loads: vertical load per wheel at rest on straight level track [N], empty if not recorded.
     """
@@ -94,9 +94,14 @@ class Header:
     speed: float
     gravity: float
     friction: float
-    course: Course
+    track: Mapping[str, Any]
     wheelsets: tuple[Wheelset, ...]
     static_wheel_loads: Mapping[str, float]
+
+    @property
+    def course(self) -> Course:
+        """The one curve of the track; errors: InputError if it has none or several."""
+        return course_of(self.track)
 
 
 def course_of(track: Mapping[str, Any]) -> Course:
@@ -192,7 +197,7 @@ def header_of(result: xr.Dataset) -> Header:
         speed=float(spec["speed"]),
         gravity=float(spec["gravity"]),
         friction=float(spec["wheels"][0]["friction"]),
-        course=course_of(spec["track"]),
+        track=spec["track"],
         wheelsets=wheelsets_of(spec["wheels"]),
         static_wheel_loads=json.loads(result.attrs.get("static_wheel_loads", "{}")),
     )

@@ -105,7 +105,7 @@ class Traction:
         return d.rate_limit(DEMAND, within, self.torque_rate)
 
     def _following(self, d: Diagram, vehicle: Vehicle, now: str, most: str, least: str) -> str:
-        """T = r0/8 [m* v_ref' + R(v_ref) + 2 pi f m* (e + integral of e/Ti)] with e = v_ref - v, m* with what rotates."""
+        """T = r0/8 [m* v_ref' + R(v_ref) + 2 pi f m* (e + integral of e/Ti)], e = v_ref - v; m* turns too."""
         assert self.speed is not None
         times, speeds = two_at_least(self.time, self.speed)
         wanted = d.lookup("traction.speed", now, times, speeds)

@@ -6,6 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from klingel.drives.operating import WHEELS
+from klingel.drives.resistance import running_resistance
 from klingel.errors import InputError
 
 if TYPE_CHECKING:
@@ -61,3 +63,27 @@ def traction_torque_max(vehicle: Vehicle, speed: float) -> float:
     if drive is None:
         raise InputError.single("drive", None, "is missing", remedy=f"{vehicle.name} is hauled; take a driven vehicle")
     return operating_limit(drive, speed / vehicle.geometry.wheel_radius / drive.gear_ratio).wheel_torque
+
+
+def starting_point(vehicle: Vehicle, speed: float, *, margin: float) -> tuple[float, float]:
+    """Field current [A] and armature voltage [V] that keep a vehicle at a speed [m/s] against its running resistance.
+
+    margin: share of x VaMax that the back-EMF may reach, above the base speed it does. Standing still there is no
+    resistance to keep up with. Error: InputError for a vehicle without drives.
+
+    >>> from klingel import library
+    >>> starting_point(library.vehicle("mechatronic_irw"), 0.0, margin=0.97)
+    (10.0, 0.0)
+    """
+    drive = vehicle.drive
+    if drive is None:
+        raise InputError.single("drive", None, "is missing", remedy=f"{vehicle.name} is hauled; take a driven vehicle")
+    radius = vehicle.geometry.wheel_radius
+    motor_speed = speed / radius / drive.gear_ratio
+    field = drive.field_current_rated
+    if motor_speed <= 0.0:
+        return field, 0.0
+    field = min(field, margin * drive.traction_share * drive.armature_voltage_max / (drive.emf_constant * motor_speed))
+    torque = drive.gear_ratio * running_resistance(vehicle)(speed) / WHEELS * radius + drive.rotor_damping * motor_speed
+    constant = drive.emf_constant * field
+    return field, constant * motor_speed + drive.armature_resistance * torque / constant

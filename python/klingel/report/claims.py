@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from klingel.assess.curving import FLANGE_ANGLE
+from klingel.assess.flange import FLANGE_ANGLE
 from klingel.report.notes import ESTIMATE, HUNTING, database_beside, with_database
 from klingel.report.summary import ACTIVE, SHORT, Summary, joined
 

@@ -26,10 +26,15 @@ STRATEGIES: dict[str, type[Any]] = {
 }
 """Names of strategies in files."""
 
-PARTS: dict[str, type[Any]] = {"timing": control.Timing, "contact": control.ContactDesign}
+PARTS: dict[str, type[Any]] = {
+    "timing": control.Timing,
+    "contact": control.ContactDesign,
+    "traction": control.Traction,
+    "slip": control.SlipControl,
+}
 """Tables inside a strategy's table."""
 
-UNITS = {"frequency": "Hz", "time": "s", "pole": "s", "speed": "m/s", "creep": "N", "load": "N"}
+UNITS = {"frequency": "Hz", "time": "s", "pole": "s", "speed": "m/s", "creep": "N", "load": "N", "rate": "N m/s"}
 """SI units of a strategy's parameters by the last word of their names; all others are pure numbers."""
 
 
@@ -150,6 +155,9 @@ def _parameter(kind: type[Any], name: str, value: object, key: str) -> Any:
         return _made(PARTS[name], value, place)
     if hints[name] is int and (type(value) is not int or value < 0):
         raise InputError.single(place, value, "is no whole number", remedy="give 0, 1, 2 or more")
+    if isinstance(value, list):
+        unit = UNITS.get(name, "1")
+        return tuple(to_si(each, unit, key=f"{place}[{i}]") for i, each in enumerate(value))
     if hints[name] is float:
         unit = UNITS.get(name.rpartition("_")[2], "1")
         number = to_si(value, unit, key=place)  # type: ignore[arg-type]  # it refuses what is no quantity

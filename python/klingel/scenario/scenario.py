@@ -10,8 +10,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, Protocol, get_args
 
+import numpy as np
+
 from klingel.contact import DRY_AND_CLEAN, STANDARD, CreepOptions, Profile
 from klingel.contact.checks import Kind, kind_problems
+from klingel.control import Traction
 from klingel.errors import InputError, Problem, nearest
 from klingel.track import Track
 from klingel.units import Quantity, to_si
@@ -133,10 +136,21 @@ class Scenario:
         return self.vehicle.geometry.half_length + RUN_OUT
 
     @property
+    def traction(self) -> Traction | None:
+        """The traction loop of the strategy, without which the speed is held."""
+        traction: Traction | None = getattr(self.control, "traction", None)
+        return traction
+
+    @property
     def end_time(self) -> float:
-        """Duration of the run [s]; by default until the first wheelset is at the end of the track."""
+        """Duration of the run [s]; by default until the first wheelset is at the end of the track.
+
+        With a traction loop by default until its last time.
+        """
         if self.duration is not None:
             return self.duration
+        if self.traction is not None:
+            return self.traction.time[-1]
         return (self.track.length - 2.0 * self.start) / self.speed
 
 
@@ -222,6 +236,21 @@ def _nearest_step(step: float, sample_time: float, interval: float) -> float:
     return min(both or steps or [sample_time], key=lambda s: abs(s - step))
 
 
+def _traction_problems(scenario: Scenario, traction: Traction, room: float) -> Iterator[Problem]:
+    """The run ends after it began, and a speed that is followed from the start stays on the track."""
+    if not scenario.end_time > 0.0:
+        yield Problem("duration", scenario.duration, "is missing for a command that never changes", "give it [s]")
+    elif traction.speed is not None:
+        if abs(traction.speed[0] - scenario.speed) > 0.5:
+            remedy = f"start with {scenario.speed:g} m/s, the speed of the scenario"
+            yield Problem("control.traction.speed", traction.speed[0], "begins elsewhere [m/s]", remedy)
+        time = np.linspace(0.0, scenario.end_time, 1001)
+        distance = float(np.trapezoid(np.interp(time, traction.time, traction.speed), time))
+        if distance > room:
+            remedy = f"give a track of {scenario.track.length + distance - room:.0f} m, or an earlier end"
+            yield Problem("track", f"{scenario.track.length:g} m", f"ends before {distance:.0f} m are run", remedy)
+
+
 def _run_problems(scenario: Scenario) -> Iterator[Problem]:
     if not scenario.speed > 0.0:
         return
@@ -229,6 +258,8 @@ def _run_problems(scenario: Scenario) -> Iterator[Problem]:
     if room <= 0.0:
         remedy = f"give more than {2.0 * scenario.start:.1f} m, the vehicle's length included"
         yield Problem("track", f"{scenario.track.length:g} m", "is too short for the vehicle", remedy)
+    elif scenario.traction is not None:
+        yield from _traction_problems(scenario, scenario.traction, room)
     elif scenario.duration is not None and scenario.duration * scenario.speed > room:
         remedy = f"give at most {room / scenario.speed:.2f} s, or lengthen the track"
         yield Problem("duration", scenario.duration, "runs over the end of the track [s]", remedy)

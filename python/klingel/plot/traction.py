@@ -1,0 +1,169 @@
+"""Figures of traction and braking: speed, torque, voltages with what is left for steering, currents, displacement;
+creepages over a patch of low adhesion."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from klingel.assess.header import header_of, values
+from klingel.plot.response import LINES
+from klingel.plot.style import BAND, INK, PALE, panels, styled
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+RATE = 100.0
+"""Points drawn a second at most; a wheelset's displacement and a voltage move slowly against it [Hz]."""
+
+Y_LIMIT = 6.0
+"""Where flange contact is near [mm]."""
+
+CREEPAGE_LIMIT = 0.03
+
+
+def run_figure(result: xr.Dataset, *, title: str, traction_share: float) -> Figure:
+    """What a run under traction did, over time: five panels.
+
+    result: of a strategy with a traction loop and DC motors; traction_share: x, the part of VaMax that traction may
+    use. Errors: InputError for a channel that is missing.
+    """
+    header = header_of(result)
+    sets = [w.name for w in header.wheelsets]
+    drives = json.loads(result.attrs["spec"])["drives"][0]
+    most = float(drives["armature_voltage_max"])
+    time, some = _thinned(result)
+
+    def of(channel: str) -> NDArray[np.float64]:
+        return values(result, channel)[some]
+
+    def pair(quantity: str, name: str) -> NDArray[np.float64]:
+        return 0.5 * (of(f"{name}.left.{quantity}") + of(f"{name}.right.{quantity}"))
+
+    with styled():
+        figure, axes = panels(5, height=8.2)
+        figure.suptitle(title, x=0.01, ha="left", weight="bold", size=10)
+        speed, torque, voltage, current, place = axes
+        _shade_arc(axes, result, time)
+        speed.plot(time, 3.6 * of("body.speed"), color=INK)
+        speed.set_ylabel("speed\n[km/h]")
+        torque.plot(time, of("traction.torque_asked") / 1e3, color=PALE, ls=(0, (1.2, 1.2)), label="asked")
+        for name, (color, line) in zip(sets, LINES, strict=False):
+            torque.plot(time, pair("shaft_torque", name) / 1e3, color=color, ls=line, label=_short(name))
+        torque.set_ylabel("torque per\nwheel [kN m]")
+        first = sets[0]
+        mean = pair("armature_voltage", first)
+        largest = np.max(
+            [np.abs(of(f"{s}.{side}.armature_voltage")) for s in sets for side in ("left", "right")], axis=0
+        )
+        steering = np.max([np.abs(of(f"{s}.steering_voltage")) for s in sets], axis=0)
+        headroom = np.min([most - np.abs(pair("armature_voltage", s)) for s in sets], axis=0)
+        voltage.axhline(most, color=INK, lw=0.8)
+        voltage.axhline(traction_share * most, color=INK, lw=0.8, ls=(0, (4, 3)))
+        voltage.plot(time, np.abs(mean), color=LINES[0][0], label="|mean|, first wheelset")
+        voltage.plot(time, largest, color=LINES[3][0], ls=LINES[3][1], lw=1.0, label="largest of all motors")
+        voltage.plot(time, headroom, color=LINES[2][0], ls=LINES[2][1], label="left for steering")
+        voltage.plot(time, steering, color=LINES[1][0], ls=LINES[1][1], label="used by steering")
+        voltage.annotate("VaMax", (time[-1], most), fontsize=7.5, ha="right", va="bottom")
+        voltage.annotate("x VaMax", (time[-1], traction_share * most), fontsize=7.5, ha="right", va="top")
+        voltage.set_ylabel("armature\nvoltage [V]")
+        current.plot(time, pair("armature_current", first), color=LINES[0][0], label="armature, first wheelset")
+        current.set_ylabel("armature\ncurrent [A]")
+        field = current.twinx()
+        field.grid(False)
+        field.spines["right"].set_visible(True)
+        field.plot(time, pair("field_current", first), color=LINES[1][0], ls=LINES[1][1], label="field (right scale)")
+        field.set_ylim(bottom=0.0)
+        field.set_ylabel("field\ncurrent [A]")
+        lines = [*current.get_lines(), *field.get_lines()]
+        current.legend(lines, [str(line.get_label()) for line in lines], loc="upper left", bbox_to_anchor=(1.12, 1.0))
+        for name, (color, line) in zip(sets, LINES, strict=False):
+            place.plot(time, 1e3 * of(f"{name}.y"), color=color, ls=line)
+        reach = max(1.0, 1.15 * float(np.max([np.abs(1e3 * of(f"{s}.y")).max() for s in sets])))
+        for sign in (-1.0, 1.0):
+            if reach > 0.7 * Y_LIMIT:
+                place.axhline(sign * Y_LIMIT, color=INK, lw=0.8, ls=(0, (4, 3)))
+        place.set_ylim(-reach, reach)
+        place.set_ylabel("wheelsets to\nthe right [mm]")
+        place.set_xlabel("time  [s]")
+        for axis in (torque, voltage):
+            axis.legend(loc="upper left", bbox_to_anchor=(1.12, 1.05), handlelength=3.0)
+        place.set_xlim(time[0], time[-1])
+        return figure
+
+
+def patch_figure(result: xr.Dataset, *, title: str, begin: float, end: float, radius: float) -> Figure:
+    """Passage over a patch of low adhesion between two positions [m]: speeds, creepages, torque, displacement.
+
+    radius: of the wheels [m]. The band is the leading wheelset's time in the patch.
+    """
+    header = header_of(result)
+    sets = [w.name for w in header.wheelsets]
+    time, some = _thinned(result)
+
+    def of(channel: str) -> NDArray[np.float64]:
+        return values(result, channel)[some]
+
+    with styled():
+        figure, axes = panels(4, height=7.0)
+        figure.suptitle(title, x=0.01, ha="left", weight="bold", size=10)
+        rim, creep, torque, place = axes
+        at = of(f"{sets[0]}.s")
+        inside = (at >= begin) & (at <= end)
+        if inside.any():
+            for axis in axes:
+                axis.axvspan(time[inside][0], time[inside][-1], color=BAND, zorder=0)
+        rim.plot(time, 3.6 * of("body.speed"), color=INK, label="vehicle")
+        for side, (color, line) in zip(("left", "right"), LINES[1:], strict=False):
+            rim.plot(
+                time, 3.6 * radius * of(f"{sets[0]}.{side}.spin_speed"), color=color, ls=line, label=f"{side} wheel"
+            )
+        rim.set_ylabel("speed, first\nwheelset [km/h]")
+        for name, (color, line) in zip(sets, LINES, strict=False):
+            both = [of(f"{name}.{side}.creep_x") for side in ("left", "right")]
+            worst = np.where(np.abs(both[0]) > np.abs(both[1]), both[0], both[1])
+            creep.plot(time, 100.0 * worst, color=color, ls=line, label=_short(name))
+        for sign in (-1.0, 1.0):
+            creep.axhline(sign * 100.0 * CREEPAGE_LIMIT, color=INK, lw=0.8, ls=(0, (4, 3)))
+        creep.set_ylabel("creepage of the\nworse wheel [%]")
+        torque.plot(time, of("traction.torque_asked") / 1e3, color=PALE, ls=(0, (1.2, 1.2)), label="asked")
+        for name, (color, line) in zip(sets, LINES, strict=False):
+            both = 0.5 * (of(f"{name}.left.shaft_torque") + of(f"{name}.right.shaft_torque"))
+            torque.plot(time, both / 1e3, color=color, ls=line, label=_short(name))
+        torque.set_ylabel("torque per\nwheel [kN m]")
+        for name, (color, line) in zip(sets, LINES, strict=False):
+            place.plot(time, 1e3 * of(f"{name}.y"), color=color, ls=line)
+        place.set_ylabel("wheelsets to\nthe right [mm]")
+        place.set_xlabel("time  [s]")
+        for axis in (rim, creep, torque):
+            axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.05), handlelength=3.0)
+        place.set_xlim(time[0], time[-1])
+        return figure
+
+
+def _thinned(result: xr.Dataset) -> tuple[NDArray[np.float64], slice]:
+    time = np.asarray(result["time"].values, dtype=np.float64)
+    some = slice(None, None, max(1, round(1.0 / (RATE * float(time[1] - time[0])))))
+    return time[some], some
+
+
+def _short(name: str) -> str:
+    """bogie1.wheelset2 as people number wheelsets, 1 to 4 from the front."""
+    bogie, _, wheelset = name.partition(".")
+    return f"wheelset {2 * (int(bogie[-1]) - 1) + int(wheelset[-1])}"
+
+
+def _shade_arc(axes: list[Axes], result: xr.Dataset, time: NDArray[np.float64]) -> None:
+    """The time that the body spends in curvature."""
+    curvature = values(result, "body.curvature")
+    clock = np.asarray(result["time"].values, dtype=np.float64)
+    curved = np.abs(curvature) > 1e-9
+    if curved.any():
+        edges = clock[curved][0], clock[curved][-1]
+        for axis in axes:
+            axis.axvspan(*edges, color=BAND, zorder=0)
