@@ -61,6 +61,8 @@ pub enum Fault {
         "overloaded: {wheel} is pressed {value:.2e} m into its rail, the contact reaches to {most} m; check loads and step"
     )]
     Overloaded { wheel: String, value: f64, most: f64 },
+    #[error("end of track: {body} has reached {length:.1} m, where the track ends; lengthen it or end the run sooner")]
+    EndOfTrack { body: String, length: f64 },
     #[error("unstable: state {state} is no longer finite")]
     Unstable { state: String },
     #[error("controller failed: {0}")]

@@ -8,7 +8,7 @@ use crate::equilibrium::{design_state, equilibrium};
 use crate::error::{EngineError, Fault};
 use crate::excitation::Excitation;
 use crate::integrate::Etdrk4;
-use crate::model::Model;
+use crate::model::{Course, Model, Wheel};
 use crate::pass::Pass;
 use crate::rates::{Workspace, rates};
 use crate::spec::Spec;
@@ -173,7 +173,7 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
                 }
                 rates(m, at, &inputs, &mut w, f)
             })?;
-            finite(m, &x)
+            finite(m, &x).and_then(|()| on_track(m, &x))
         });
         series.evaluations += 4;
         if let Err(fault) = advanced {
@@ -240,6 +240,17 @@ fn kick(m: &Model, x: &mut [f64]) -> Result<(), EngineError> {
         }
     }
     Ok(())
+}
+
+/// A vehicle that drives itself may come to the end of its track.
+fn on_track(m: &Model, x: &[f64]) -> Result<(), Fault> {
+    let Course::Laid(alignment) = &m.track else { return Ok(()) };
+    let length = alignment.length();
+    let beyond = |w: &&Wheel| m.hold.is_none() && x[m.bodies[w.body].state] > length;
+    match m.wheels.iter().find(beyond) {
+        Some(wheel) => Err(Fault::EndOfTrack { body: m.bodies[wheel.body].name.clone(), length }),
+        None => Ok(()),
+    }
 }
 
 fn finite(m: &Model, x: &[f64]) -> Result<(), Fault> {

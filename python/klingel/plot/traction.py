@@ -25,6 +25,9 @@ Y_LIMIT = 6.0
 """Where flange contact is near [mm]."""
 
 CREEPAGE_LIMIT = 0.03
+"""That slip control keeps to [-]."""
+
+SIDES = ("left", "right")
 
 
 def run_figure(result: xr.Dataset, *, title: str, traction_share: float) -> Figure:
