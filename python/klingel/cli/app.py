@@ -59,6 +59,23 @@ def perez2004(
     body.run(out, jobs=jobs, radii=only or None, friction_variants=variants, database_variant=variants)
 
 
+@study.command()
+def traction(
+    out: Annotated[Path, typer.Option(help="Folder for figures, report, table and time series.")] = Path(
+        "out/traction"
+    ),
+    jobs: Annotated[int | None, typer.Option(min=1, help="Runs at a time; default: one per processor.")] = None,
+    only: Annotated[
+        list[str] | None, typer.Option(help="Only this part: launch, stop, curve or patch; may be repeated.")
+    ] = None,
+) -> None:
+    """Traction, braking and adhesion: launch, stop, curves under torque, patches of low adhesion."""
+    from klingel.study import traction as body
+    from klingel.study.traction_cases import GROUPS
+
+    body.run(out, jobs=jobs, groups=only or GROUPS)
+
+
 @app.command()
 def run(
     scenario: Annotated[Path, typer.Argument(help="Scenario file (TOML).")],

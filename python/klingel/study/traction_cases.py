@@ -110,7 +110,8 @@ def _stop(strategy: str) -> Iterable[TractionRun]:
     """A stop from 160 km/h with 0.8 m/s2."""
     v = 160.0 / 3.6
     end = 3.0 + v / 0.8
-    scenario = _scenario(strategy, Track.straight(1.6e3), v, Traction((0.0, 3.0, end, end + 6.0), speed=(v, v, 0.0, 0.0)))
+    traction = Traction((0.0, 3.0, end, end + 6.0), speed=(v, v, 0.0, 0.0))
+    scenario = _scenario(strategy, Track.straight(1.6e3), v, traction)
     yield TractionRun("stop", f"stop_{strategy}", "stop from 160 km/h on straight track", strategy, scenario)
 
 

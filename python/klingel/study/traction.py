@@ -1,0 +1,121 @@
+"""The traction study, end to end: launch, stop, traction and braking in curves, patches of low adhesion, both drives.
+Simulate, assess and save in threads; then tables, figures and the report."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+
+from klingel import result
+from klingel.assess.traction import PatchFigures, TractionFigures, patch, traction
+from klingel.errors import InputError, SimulationError
+from klingel.study import traction_output as output
+from klingel.study.runner import Batch, run_all
+from klingel.study.traction_cases import GROUPS, STRATEGIES, TractionRun, traction_runs
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+    from klingel._core import Progress
+
+DRAWN_RATE = 100.0
+"""Of the series that figures are drawn from [Hz]."""
+
+
+@dataclass(frozen=True)
+class Finished:
+    """What is kept in memory of one run: its figures and a thinned series; the whole one is on disk."""
+
+    run: TractionRun
+    figures: TractionFigures
+    patch: PatchFigures | None
+    series: xr.Dataset
+
+
+@dataclass(frozen=True)
+class TractionStudy:
+    """The study's results.
+
+    Attributes:
+        out: folder with everything that was written.
+        summary: one row a run, columns of `TractionFigures`.
+        failed: run to the reason why it is missing.
+        elapsed: wall time of the whole study [s].
+    """
+
+    out: Path
+    summary: pd.DataFrame
+    failed: Mapping[str, str] = field(default_factory=dict)
+    elapsed: float = 0.0
+
+
+def run(
+    out: str | Path,
+    *,
+    jobs: int | None = None,
+    groups: Iterable[str] = GROUPS,
+    strategies: Iterable[str] = STRATEGIES,
+    console: Console | None = None,
+) -> TractionStudy:
+    """Run the study and write its folder.
+
+    Writes `summary.csv`, one figure a run as SVG and PNG, `report.html`, and `runs/<run>.nc`; each file whole or not at
+    all. Finished runs are kept if another fails or Ctrl-C comes: tables, figures and report are then made of these.
+
+    Args:
+        out: folder to write to; made if missing.
+        jobs: runs at a time; one a processor if not given.
+        groups: parts of the study, of `launch`, `stop`, `curve`, `patch`.
+        strategies: of `solid_like`, `irw_like`.
+        console: to print on.
+
+    Returns:
+        The table and what failed.
+
+    Raises:
+        InputError: the folder cannot be made, or an unknown part or strategy.
+        SimulationError: some runs failed; the message names them, the rest is written.
+        KeyboardInterrupt: after Ctrl-C, once the finished runs are written.
+    """
+    started = time.perf_counter()
+    console = console or output.console()
+    runs = {each.name: each for each in traction_runs(groups, strategies=strategies)}
+    folder = Path(out)
+    try:
+        (folder / "runs").mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        remedy = "choose another folder"
+        raise InputError.single("out", str(out), f"cannot be made a folder ({error.strerror})", remedy=remedy) from None
+
+    def work(name: str, progress: Progress) -> Finished:
+        one = runs[name]
+        series = result.simulate(one.scenario, progress=progress)
+        figures = traction(series, name=name, radius=one.scenario.vehicle.geometry.wheel_radius)
+        passed = patch(series, *one.patch) if one.patch else None
+        result.save(series, folder / "runs" / f"{name}.nc")
+        interval = float(series["time"][1] - series["time"][0])
+        thinned = series.isel(time=slice(None, None, max(1, round(1.0 / (DRAWN_RATE * interval)))))
+        return Finished(one, figures, passed, thinned.copy(deep=True))
+
+    with console.status("contact tables: compiling, some seconds for a new pair"):
+        for one in runs.values():
+            result.prepare(one.scenario)
+            break
+    batch: Batch[Finished] = run_all(list(runs), work, result.progress, jobs=jobs, console=console)
+    done = list(batch.done.values())
+    table = output.summary(done)
+    output.write(folder, done, table, failed=batch.failed)
+    study = TractionStudy(folder, table, batch.failed, time.perf_counter() - started)
+    output.show(console, table, folder, study.elapsed)
+    if batch.interrupted:
+        raise KeyboardInterrupt
+    if batch.failed:
+        listed = "\n".join(f"  {name}: {reason}" for name, reason in batch.failed.items())
+        raise SimulationError(f"{len(batch.failed)} of {len(runs)} runs failed, the rest is in {folder}\n{listed}")
+    return study
