@@ -39,6 +39,9 @@ if TYPE_CHECKING:
 
 Curvature = Literal["gyro", "database"]
 
+REACH_ROUNDED = 1e-3
+"""Over which the integral of the steering loop fades out beyond its reach [m]."""
+
 
 @dataclass(frozen=True)
 class IRWLike:
@@ -48,6 +51,8 @@ class IRWLike:
         (position along a known track).
     frequency: crossover fI of the steering loop [Hz]; with a conicity half as large again the gain margin is still 2.
     integral_time: Ti of the steering loop [s], ten times the loop's own time so that it costs little phase.
+    integral_reach: displacement up to which the integral acts [m]. Beyond it, near the flange, adhesion cannot carry the
+        lateral force, and an integral would only grow.
     current_frequency: crossover of the differential current loop [Hz]: above all motion of the wheelset, below what a
         delay of two samples bears.
     yaw_frequency: low-pass of the wheelset's yaw rate [Hz]. Above it lambda psi'/r0 stays in the speed difference, as
@@ -71,6 +76,7 @@ class IRWLike:
     curvature: Curvature = "gyro"
     frequency: float = 1.6
     integral_time: float = 1.0
+    integral_reach: float = 4e-3
     current_frequency: float = 30.0
     yaw_frequency: float = 1.5
     gyro_frequency: float = 1.5
@@ -85,7 +91,7 @@ class IRWLike:
         if self.curvature not in get_args(Curvature):
             remedy = nearest(self.curvature, get_args(Curvature))
             raise InputError.single("control.curvature", self.curvature, "is not known", remedy=remedy)
-        loops = ("frequency", "integral_time", "current_frequency")
+        loops = ("frequency", "integral_time", "integral_reach", "current_frequency")
         sensors = ("yaw_frequency", "gyro_frequency", "extrapolation", "roll_frequency", "sensor_frequency")
         check_positive(self, (*loops, *sensors))
 
@@ -152,9 +158,23 @@ class IRWLike:
         else:
             rho, roll_rate = database_curve(d, plant, w, track, self.timing)
         error, limit = f"{w.name}.wd.error", 0.5 * plant.moment_max
-        feedback = d.pi(f"{w.name}.M.feedback", error, proportional=proportional, integral=integral, limit=limit)
+        reach = self._integral_share(d, plant, w)
+        held = d.product(f"{w.name}.steering.integral_gain", integral, reach)
+        feedback = d.pi(f"{w.name}.M.feedback", error, proportional=proportional, integral=held, limit=limit)
         gyroscopic = gyroscopic_moment(d, plant, w, roll_rate)
         feedforward = steering_feedforward(
             d, plant, self.contact, w, rho=rho, roll_rate=roll_rate, gyroscopic=gyroscopic
         )
         command_steering(d, plant, w, d.sum(f"{w.name}.M", {feedforward: 1.0, feedback: 1.0}), self.timing)
+
+    def _integral_share(self, d: Diagram, plant: Plant, w: Wheelset) -> str:
+        """1 while the displacement that the error stands for, e r0^2/(V gamma), is one to be removed; 0 near the flange.
+
+        There adhesion does not carry the lateral force, and an integral would only grow until it can.
+        """
+        per_error = scheduled(d, f"{w.name}.y.gain", lambda v: -(plant.radius**2) / (self.contact.conicity * v))
+        y = d.product(f"{w.name}.y.told", f"{w.name}.wd.error", per_error)
+        full, out = self.integral_reach, self.integral_reach + REACH_ROUNDED
+        share = d.lookup(f"{w.name}.integral_share", y, (-out, -full, full, out), (0.0, 1.0, 1.0, 0.0))
+        d.probe(f"{w.name}.integral_share", "1", share)
+        return share

@@ -136,8 +136,8 @@ def patch_figure(result: xr.Dataset, *, title: str, begin: float, end: float, ra
         creep.set_ylabel("creepage of the\nworse wheel [%]")
         torque.plot(time, of("traction.torque_asked") / 1e3, color=PALE, ls=(0, (1.2, 1.2)), label="asked")
         for name, (color, line) in zip(sets, LINES, strict=False):
-            both = 0.5 * (of(f"{name}.left.shaft_torque") + of(f"{name}.right.shaft_torque"))
-            torque.plot(time, both / 1e3, color=color, ls=line, label=_short(name))
+            mean = 0.5 * (of(f"{name}.left.shaft_torque") + of(f"{name}.right.shaft_torque"))
+            torque.plot(time, mean / 1e3, color=color, ls=line, label=_short(name))
         torque.set_ylabel("torque per\nwheel [kN m]")
         for name, (color, line) in zip(sets, LINES, strict=False):
             place.plot(time, 1e3 * of(f"{name}.y"), color=color, ls=line)

@@ -34,7 +34,16 @@ PARTS: dict[str, type[Any]] = {
 }
 """Tables inside a strategy's table."""
 
-UNITS = {"frequency": "Hz", "time": "s", "pole": "s", "speed": "m/s", "creep": "N", "load": "N", "rate": "N m/s"}
+UNITS = {
+    "frequency": "Hz",
+    "time": "s",
+    "pole": "s",
+    "speed": "m/s",
+    "creep": "N",
+    "load": "N",
+    "rate": "N m/s",
+    "reach": "m",
+}
 """SI units of a strategy's parameters by the last word of their names; all others are pure numbers."""
 
 

@@ -46,7 +46,7 @@ PARTS = {
     "launch": (
         "From standstill to 265 km/h",
         "Straight level track. Below the base speed the field is full and the torque limited by the armature current; "
-        "above it the field is weakened so that the back-EMF leaves the mean voltage below x VaMax, and what remains to "
+        "above it the field is weakened so that the mean voltage stays below x VaMax, and what remains to "
         "VaMax is kept for steering at every speed.",
     ),
     "stop": (
