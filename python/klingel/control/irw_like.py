@@ -51,8 +51,8 @@ class IRWLike:
         (position along a known track).
     frequency: crossover fI of the steering loop [Hz]; with a conicity half as large again the gain margin is still 2.
     integral_time: Ti of the steering loop [s], ten times the loop's own time so that it costs little phase.
-    integral_reach: displacement up to which the integral acts [m]. Beyond it, near the flange, adhesion cannot carry the
-        lateral force, and an integral would only grow.
+    integral_reach: displacement up to which the integral acts [m]. Beyond it, near the flange, adhesion cannot carry
+        the lateral force, and an integral would only grow.
     current_frequency: crossover of the differential current loop [Hz]: above all motion of the wheelset, below what a
         delay of two samples bears.
     yaw_frequency: low-pass of the wheelset's yaw rate [Hz]. Above it lambda psi'/r0 stays in the speed difference, as
@@ -168,7 +168,7 @@ class IRWLike:
         command_steering(d, plant, w, d.sum(f"{w.name}.M", {feedforward: 1.0, feedback: 1.0}), self.timing)
 
     def _integral_share(self, d: Diagram, plant: Plant, w: Wheelset) -> str:
-        """1 while the displacement that the error stands for, e r0^2/(V gamma), is one to be removed; 0 near the flange.
+        """1 while the displacement that the error tells, e r0^2/(V gamma), is one to be removed; 0 near the flange.
 
         There adhesion does not carry the lateral force, and an integral would only grow until it can.
         """
