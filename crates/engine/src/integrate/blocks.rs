@@ -6,7 +6,7 @@
 /// ```
 /// use klingel_engine::integrate::Blocks;
 /// let mut a = Blocks::new(vec![vec![0, 2]], &[0.0, 5.0, 0.0]);
-/// a.block_mut(0).copy_from_slice(&[-1.0, 2.0, 0.0, -3.0]); // by rows
+/// a.block_mut(0).1.copy_from_slice(&[-1.0, 2.0, 0.0, -3.0]); // by rows
 /// let mut y = [0.0; 3];
 /// a.multiply(&[1.0, 1.0, 1.0], &mut y);
 /// assert_eq!(y, [1.0, -5.0, -3.0]);
@@ -46,14 +46,24 @@ impl Blocks {
         Self { blocks: blocks.into_iter().map(block).collect(), decays, shift: 0.0 }
     }
 
+    /// How many blocks there are.
+    pub fn len(&self) -> usize {
+        self.blocks.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.blocks.is_empty()
+    }
+
     /// The states of block `b`.
     pub fn states(&self, b: usize) -> &[usize] {
         &self.blocks[b].states
     }
 
-    /// Block `b` by rows.
-    pub fn block_mut(&mut self, b: usize) -> &mut [f64] {
-        &mut self.blocks[b].matrix
+    /// Block `b`: its states, and its matrix by rows.
+    pub fn block_mut(&mut self, b: usize) -> (&[usize], &mut [f64]) {
+        let Block { states, matrix, .. } = &mut self.blocks[b];
+        (states, matrix)
     }
 
     /// y = A x.
@@ -133,7 +143,7 @@ mod tests {
     fn what_is_solved_is_the_shifted_matrix() {
         // the first pivot of the block is nil, so rows must change places
         let mut a = Blocks::new(vec![vec![3, 0, 1]], &[7.0, 7.0, 4.0, 7.0]);
-        a.block_mut(0).copy_from_slice(&[2.0, 3.0, -1.0, 4.0, 0.0, 2.0, -6.0, 1.0, 9.0]);
+        a.block_mut(0).1.copy_from_slice(&[2.0, 3.0, -1.0, 4.0, 0.0, 2.0, -6.0, 1.0, 9.0]);
         a.factor(0.5);
         let y = [0.3, -1.2, 2.0, 0.7];
         let (mut x, mut ax) = (y, [0.0; 4]);

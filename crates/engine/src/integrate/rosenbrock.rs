@@ -115,7 +115,7 @@ mod tests {
         for i in 0..steps {
             let t = i as f64 * h;
             f(t, &x, &mut first);
-            jacobian(t, &x, matrix.block_mut(0));
+            jacobian(t, &x, matrix.block_mut(0).1);
             let stepped: Result<(), Infallible> = scheme.advance(&mut x, &first, &mut matrix, |dt, x, d| {
                 f(t + dt, x, d);
                 Ok(())
@@ -143,7 +143,7 @@ mod tests {
     fn a_stiff_state_of_a_block_dies_out() {
         for rate in [1e2, 1e4, 1e8] {
             let mut matrix = Blocks::new(vec![vec![0]], &[0.0]);
-            matrix.block_mut(0)[0] = -rate;
+            matrix.block_mut(0).1[0] = -rate;
             let mut scheme = Rosenbrock::new(1e-3, 1);
             let mut y = [1.0];
             for _ in 0..4 {
