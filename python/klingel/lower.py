@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from klingel.contact import profile_of
 from klingel.drives import operating_point, running_resistance, starting_point
 from klingel.scenario import Scenario
-from klingel.track import CANT_BASE, Track
+from klingel.track import CANT_BASE, Adhesion, Track
 from klingel.vehicle import Vehicle
 
 GRAVITY = 9.81
@@ -74,6 +74,7 @@ def lower(scenario: Scenario) -> Spec:
         "gravity": GRAVITY,
         "speed": scenario.speed,
         "track": _track(scenario.track, scenario.start),
+        "adhesion": _adhesion(scenario.adhesion),
         "bodies": [*_bodies(vehicle), *(_wheelset(vehicle, axle) for axle in wheels)],
         "contact_pairs": [_pair(scenario)],
         "wheels": [_wheel(vehicle, axle, side, scenario.friction) for axle in wheels for side, _ in SIDES],
@@ -89,7 +90,7 @@ def lower(scenario: Scenario) -> Spec:
         "stops": [_lateral_stop(vehicle, bogie, x) for bogie, x in _bogies(vehicle)],
         "actuators": list(_actuators(vehicle, wheels)),
         "drives": list(_drives(scenario, wheels)),
-        "drag": _drag(vehicle),
+        "drag": _drag(vehicle, scenario.headwind),
         "hold": _hold(vehicle) if scenario.traction is None else None,
         "control": control,
         "run": {
@@ -104,8 +105,18 @@ def lower(scenario: Scenario) -> Spec:
 
 
 def _track(track: Track, start: float) -> Spec:
-    segments = [{"length": s.length, "curvature": list(s.curvature), "cant": list(s.cant)} for s in track.segments]
+    segments = [
+        {"length": s.length, "curvature": list(s.curvature), "cant": list(s.cant), "grade": list(s.grade)}
+        for s in track.segments
+    ]
     return {"segments": segments, "start": start, "cant_base": CANT_BASE}
+
+
+def _adhesion(adhesion: Adhesion | None) -> Spec | None:
+    if adhesion is None:
+        return None
+    places, left, right = adhesion.points()
+    return {"s": places.tolist(), "left": left.tolist(), "right": right.tolist()}
 
 
 def _bogies(vehicle: Vehicle) -> tuple[tuple[str, float], ...]:
@@ -315,11 +326,11 @@ def _drives(scenario: Scenario, wheels: tuple[Axle, ...]) -> Iterator[Spec]:
             }
 
 
-def _drag(vehicle: Vehicle) -> Spec | None:
+def _drag(vehicle: Vehicle, headwind: float) -> Spec | None:
     if vehicle.running_resistance is None:
         return None
     davis = running_resistance(vehicle)
-    return {"body": "body", "coefficients": [davis.constant, davis.linear, davis.quadratic]}
+    return {"body": "body", "coefficients": [davis.constant, davis.linear, davis.quadratic], "headwind": headwind}
 
 
 def _hold(vehicle: Vehicle) -> Spec:

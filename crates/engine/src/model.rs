@@ -6,9 +6,9 @@ use crate::spec::RunSpec;
 use klingel_physics::Scalar;
 use klingel_physics::contact::creep::FallingFriction;
 use klingel_physics::contact::{ContactTable, CreepForce};
-use klingel_physics::drives::{self, Actuator};
+use klingel_physics::drives::{self, Actuator, RunningResistance};
 use klingel_physics::elements::{Bushing, Maxwell, Stop};
-use klingel_physics::track::{Alignment, TrackFrame, UniformTrack};
+use klingel_physics::track::{Adhesion, Alignment, TrackFrame, UniformTrack};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -33,8 +33,10 @@ pub struct Model {
     pub actuators: Vec<ActuatorIn>,
     pub wheels: Vec<Wheel>,
     pub drives: Vec<Drive>,
-    pub drag: Option<(usize, [f64; 3])>,
+    pub drag: Option<(usize, RunningResistance)>,
     pub hold: Option<Hold>,
+    /// Friction along the track, in place of that of the wheels.
+    pub adhesion: Option<Adhesion>,
     pub creep: CreepForce,
     /// How friction falls with the slip velocity, if it does.
     pub falling_friction: Option<FallingFriction>,

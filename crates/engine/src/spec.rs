@@ -17,6 +17,9 @@ pub struct Spec {
     pub speed: f64,
     pub track: TrackSpec,
     pub bodies: Vec<BodySpec>,
+    /// Friction of both rails along the track, in place of that of the wheels.
+    #[serde(default)]
+    pub adhesion: Option<AdhesionSpec>,
     #[serde(default)]
     pub contact_pairs: Vec<PairSpec>,
     #[serde(default)]
@@ -76,6 +79,20 @@ pub struct SegmentSpec {
     pub curvature: [f64; 2],
     /// At the start and end \[m\], positive where the left rail is higher (right-hand curve).
     pub cant: [f64; 2],
+    /// At the start and end \[-\], positive uphill: it tilts gravity, its vertical curvature is left out.
+    #[serde(default)]
+    pub grade: [f64; 2],
+}
+
+/// Friction of the rails over arc length: linear between the places, the first and last value held beyond.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AdhesionSpec {
+    /// Rising \[m\].
+    pub s: Vec<f64>,
+    /// One value a place.
+    pub left: Vec<f64>,
+    pub right: Vec<f64>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -365,6 +382,9 @@ pub struct DriveSpec {
 pub struct DragSpec {
     pub body: String,
     pub coefficients: [f64; 3],
+    /// Of the air along the track, positive against the vehicle: C v^2 becomes C (v + headwind)^2 \[m/s\].
+    #[serde(default)]
+    pub headwind: f64,
 }
 
 /// A slow ideal force along the track on the centre of mass of a body that holds `speed`.

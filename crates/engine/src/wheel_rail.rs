@@ -33,6 +33,11 @@ pub struct WheelState<S> {
     /// Steepest patch above 1 kN \[rad\], and load of the most loaded patch over 15 degrees \[N\].
     pub contact_angle: S,
     pub steep_force: S,
+    /// Coefficient of friction before the slip velocity lowers it \[-\].
+    pub friction: S,
+    /// Creepages along and across, means over the patches weighted with their loads \[-\].
+    pub creep_x: S,
+    pub creep_y: S,
     /// Load of the patches so slender that the creep table does not hold their a/b \[N\].
     pub slender_force: S,
 }
@@ -41,7 +46,11 @@ pub fn wheels<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>,
     let rails = inputs[m.places.rails..].chunks_exact(RAIL.len());
     for ((wheel, state), rail) in m.wheels.iter().zip(&mut w.wheels).zip(rails) {
         let motion = &w.motions[wheel.body];
-        let (forces, moment) = wheel_on_rail(m, wheel, motion, x, rail, dx)?;
+        let friction = match &m.adhesion {
+            Some(adhesion) => adhesion.at(x[m.bodies[wheel.body].state], wheel.sign),
+            None => S::constant(wheel.friction),
+        };
+        let (forces, moment) = wheel_on_rail(m, wheel, motion, x, rail, friction, dx)?;
         let loads = &mut w.loads[wheel.body];
         loads.force_T += forces.force_T;
         loads.moment_T += moment;
@@ -61,6 +70,7 @@ fn wheel_on_rail<S: Scalar>(
     body: &Motion<S>,
     x: &[S],
     rail: &[S],
+    standing_friction: S,
     dx: &mut [S],
 ) -> Result<(WheelState<S>, Vec3<S>), Fault> {
     let (sign, spin) = (wheel.sign, x[m.rotors[wheel.rotor].state]);
@@ -108,15 +118,15 @@ fn wheel_on_rail<S: Scalar>(
     };
     let lag = wheel.stick.map(|first| lag(m.creep_floor, patches.iter().map(|p| (p, touch(p))), first, x, dx));
 
-    let (mut state, mut moment_T) = (WheelState::default(), Vec3::zero());
+    let mut state = WheelState { friction: standing_friction, ..WheelState::default() };
+    let mut moment_T = Vec3::zero();
     for (zone, patch) in patches.iter().enumerate() {
         if patch.active {
             let Touch { point_F, point_T, across, into_rail, normal, mean_speed, v_ref, creepages } = touch(patch);
             let [xi, eta, phi] = creepages;
-            let friction = S::constant(wheel.friction);
             let friction = match &m.falling_friction {
-                Some(falling) => falling.at_creepage(friction, v_ref, xi, eta),
-                None => friction,
+                Some(falling) => falling.at_creepage(standing_friction, v_ref, xi, eta),
+                None => standing_friction,
             };
             let [lag_x, lag_y] = lag.unwrap_or_default();
             let sense = sense(mean_speed / m.creep_floor);
@@ -141,11 +151,18 @@ fn wheel_on_rail<S: Scalar>(
             state.normal[zone] = normal;
             state.t_gamma += (fx * xi).abs() + (fy * eta).abs();
             state.spin_work += (mz * phi).abs();
+            state.creep_x += normal * xi;
+            state.creep_y += normal * eta;
             report_angle(&mut state, patch.angle, normal);
             if !CreepTable::holds(patch.a.value() / patch.b.value()) {
                 state.slender_force += normal;
             }
         }
+    }
+    let load = state.normal[0] + state.normal[1] + state.normal[2];
+    if load.value() > 0.0 {
+        state.creep_x = state.creep_x / load;
+        state.creep_y = state.creep_y / load;
     }
     Ok((state, moment_T))
 }

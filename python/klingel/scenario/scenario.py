@@ -16,12 +16,15 @@ from klingel.contact import DRY_AND_CLEAN, STANDARD, CreepOptions, Profile
 from klingel.contact.checks import Kind, kind_problems
 from klingel.control import Traction
 from klingel.errors import InputError, Problem, nearest
-from klingel.track import Track
+from klingel.track import Adhesion, Track
 from klingel.units import Quantity, to_si
 from klingel.vehicle import Vehicle
 
 CreepLaw = Literal["table", "fastsim", "polach", "shen_hedrick_elkins", "linear"]
 Contact = Literal["hertz", "kik_piotrowski"]
+
+FRICTION = 0.35
+"""Of dry rails [-], as the study has it."""
 
 ELEMENTS_MIN, ELEMENTS_MAX = 2, 40
 """Coarsest and finest FASTSIM grid: elements along, and across, the ellipse."""
@@ -43,14 +46,15 @@ class Scenario:
     """One run: vehicle and track, then keywords; strings carry units, plain numbers are SI.
 
     vehicle: of the library or of a file; track: where it runs; speed: at the start, held by a slow ideal force;
-    control: strategy of `klingel.control`, None for none; friction: coefficient of all contacts; contact: normal
-    contact by `hertz` (an ellipse in every zone of the wheel) or `kik_piotrowski` (not Hertzian), equally fast;
-    creep_law with creep_elements (along, across) for FASTSIM and its creep_options; wheel: profile of all wheels, None
-    for the vehicle's; rail: its profile or the name of a standard one; rail_inclination (slope, positive leans
-    inwards), gauge;
+    control: strategy of `klingel.control`, None for none; friction: coefficient of all contacts; adhesion: friction
+    along the track in its place; headwind: speed of the air against the vehicle, for the running resistance;
+    contact: normal contact by `hertz` (an ellipse in every zone of the wheel) or `kik_piotrowski` (not Hertzian),
+    equally fast; creep_law with creep_elements (along, across) for FASTSIM and its creep_options; wheel: profile of all
+    wheels, None for the vehicle's; rail: its profile or the name of a standard one; rail_inclination (slope, positive
+    leans inwards), gauge;
     stick: creepages need way to build up, so that standing wheels stick instead of creeping;
-    step: of the integrator; record_interval: of the results; duration: None runs to the end of the track, a vehicle that
-    starts from rest needs one.
+    step: of the integrator; record_interval: of the results; duration: None runs to the end of the track; a vehicle
+    that starts from rest needs one, with a traction loop it is that of the commands.
     Errors: InputError with every problem.
 
     >>> from klingel import library
@@ -64,6 +68,8 @@ class Scenario:
     speed: float
     control: Strategy | None
     friction: float
+    adhesion: Adhesion | None
+    headwind: float
     contact: Contact
     creep_law: CreepLaw
     creep_elements: tuple[int, int]
@@ -84,7 +90,9 @@ class Scenario:
         *,
         speed: Quantity,
         control: Strategy | None = None,
-        friction: Quantity = 0.35,
+        friction: Quantity = FRICTION,
+        adhesion: Adhesion | None = None,
+        headwind: Quantity = 0.0,
         contact: Contact = "hertz",
         creep_law: CreepLaw = "table",
         creep_elements: tuple[int, int] = (10, 10),
@@ -104,6 +112,8 @@ class Scenario:
             "speed": to_si(speed, "m/s", key="speed"),
             "control": control,
             "friction": to_si(friction, "1", key="friction"),
+            "adhesion": adhesion,
+            "headwind": to_si(headwind, "m/s", key="headwind"),
             "contact": contact,
             "creep_law": creep_law,
             "creep_elements": _as_tuple(creep_elements),
@@ -183,6 +193,7 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
         yield Problem("stick", scenario.stick, "is no yes or no", "give True or False")
     if scenario.friction > 1.5:
         yield Problem("friction", scenario.friction, "is no coefficient of friction", "give 0.05 to 0.6")
+    yield from _along_track_problems(scenario)
     if not abs(scenario.rail_inclination) <= 0.1:
         yield Problem(
             "rail_inclination", scenario.rail_inclination, "is too steep", "give a slope such as 1/40 = 0.025"
@@ -203,6 +214,18 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
     if scenario.step > 0.0:
         yield from _step_problems(scenario)
     yield from _run_problems(scenario)
+
+
+def _along_track_problems(scenario: Scenario) -> Iterator[Problem]:
+    adhesion = scenario.adhesion
+    if adhesion is not None and not isinstance(adhesion, Adhesion):
+        yield Problem("adhesion", adhesion, "is none", "give klingel.track.Adhesion")
+    elif adhesion is not None and scenario.friction not in (FRICTION, adhesion.base):
+        remedy = f"give one friction: leave it out, or make it the base {adhesion.base:g} of the adhesion"
+        yield Problem("friction", scenario.friction, "and adhesion contradict each other", remedy)
+    if scenario.headwind != 0.0 and scenario.vehicle.running_resistance is None:
+        remedy = "give the vehicle a [running_resistance]"
+        yield Problem("headwind", scenario.headwind, "needs a running resistance", remedy)
 
 
 def _profile_problems(scenario: Scenario) -> Iterator[Problem]:

@@ -9,7 +9,7 @@ use crate::inputs::Places;
 use crate::model::{Body, Course, Joint, Model, Rotor};
 use crate::spec::{BodySpec, JointSpec, RunSpec, SegmentSpec, Spec, TrackSpec, UniformSpec};
 use klingel_physics::contact::Material;
-use klingel_physics::track::{Alignment, Segment, UniformTrack};
+use klingel_physics::track::{Adhesion, Alignment, Segment, UniformTrack};
 
 pub use wheels::{named_profile, pair_geometry, prepare};
 
@@ -34,9 +34,9 @@ pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
     let mut inputs: Vec<f64> = spec.drives.iter().map(|d| d.armature_voltage).collect();
     let actuators = c.actuators(&mut inputs)?;
     let drives = c.drives()?;
-    let drag =
-        spec.drag.as_ref().map(|d| Ok::<_, EngineError>((c.body("drag", &d.body)?, d.coefficients))).transpose()?;
+    let drag = c.drag()?;
     let hold = c.hold()?;
+    let adhesion = spec.adhesion.as_ref().map(|a| Adhesion::new(&a.s, &a.left, &a.right)).transpose()?;
     let material = Material::STEEL;
     let wheels = c.wheels(&material)?;
     let (creep, falling_friction) = wheels::creep_law(&spec.creep, &material)?;
@@ -65,6 +65,7 @@ pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
         drives,
         drag,
         hold,
+        adhesion,
         creep,
         falling_friction,
         creep_floor: CREEP_FLOOR,
@@ -85,10 +86,13 @@ fn course(track: &TrackSpec) -> Result<Course, EngineError> {
             return Err(value("track.segments", track.segments.len(), "leave them out on a uniform track"));
         }
         // the limits of a laid track hold as well
-        Alignment::new(&[Segment { length: 1.0, curvature: [curvature; 2], cant: [cant; 2] }], cant_base)?;
+        Alignment::new(
+            &[Segment { length: 1.0, curvature: [curvature; 2], cant: [cant; 2], grade: [0.0; 2] }],
+            cant_base,
+        )?;
         return Ok(Course::Uniform(UniformTrack { curvature, cant, cant_base }));
     }
-    let segment = |s: &SegmentSpec| Segment { length: s.length, curvature: s.curvature, cant: s.cant };
+    let segment = |s: &SegmentSpec| Segment { length: s.length, curvature: s.curvature, cant: s.cant, grade: s.grade };
     let segments: Vec<Segment> = track.segments.iter().map(segment).collect();
     Ok(Course::Laid(Alignment::new(&segments, cant_base)?))
 }

@@ -4,7 +4,9 @@
 mod actuator;
 mod field;
 mod motor;
+mod resistance;
 
 pub use actuator::{Actuator, ActuatorState};
 pub use field::{FieldError, field_current, wheel_torque, wheel_torque_max};
 pub use motor::{Drive, DriveState};
+pub use resistance::RunningResistance;
