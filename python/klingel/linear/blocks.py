@@ -45,8 +45,10 @@ def eigen(model: LinearModel) -> Eigen:
 
 
 def live(model: LinearModel) -> tuple[Complex, Complex]:
-    """Of the vehicle's own eigenvalues (`lives`) one of each conjugate pair [1/s] (k), and their right vectors as columns
-    (n x k), in no order: what is followed over a parameter, in half the time of `eigen`."""
+    """Of the vehicle's own eigenvalues (`lives`) one of each conjugate pair [1/s] (k), and their right vectors (n x k).
+
+    They are what is followed over a parameter; in no order, in half the time of `eigen`.
+    """
     free = _Free.of(model)
     kept = []
     for part in free.parts:

@@ -70,7 +70,7 @@ class Halves:
         return self.unfolded_rows(self.unfolded_rows(A).T).T
 
     def unfolded_rows(self, rows: NDArray[Number]) -> NDArray[Number]:
-        """Folded rows (n x m), such as eigenvectors as columns, over the states of the model; what was left out is 0."""
+        """Folded rows (n x m), such as eigenvectors as columns, over the model's states; what was left out is 0."""
         own = rows.copy()
         self._turn(own)
         whole = np.zeros((self.states, rows.shape[1]), dtype=rows.dtype)
@@ -84,7 +84,7 @@ class Halves:
 
 
 class Part(NamedTuple):
-    """States that meet no others: their places, their balanced matrix, and the scale of its states in the given ones."""
+    """States that meet no others: their places, their balanced matrix, the scale of its states in the given ones."""
 
     at: Places
     matrix: Matrix
@@ -93,7 +93,8 @@ class Part(NamedTuple):
 
 def parts(A: Matrix) -> list[Part]:
     """The parts of a matrix that do not meet."""
-    balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
+    scaled, (scales, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
+    balanced, scale = np.asarray(scaled, dtype=np.float64), np.asarray(scales, dtype=np.float64)
     size = np.abs(balanced)
     meets = size > MEETS * size.max(initial=0.0)
     return [Part(at, balanced[np.ix_(at, at)], scale[at]) for at in _connected(meets | meets.T)]

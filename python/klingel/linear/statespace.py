@@ -108,8 +108,8 @@ def close(plant: LinearModel, control: dict[str, Any]) -> LinearModel:
     )
     B = np.vstack([gamma, b @ D, d @ D])
     outputs = len(plant.outputs)
-    z = tuple(Signal(f"control.{name}", "1") for name in control["states"])
-    v = tuple(Signal(f"{plant.inputs[i].name}.put_out", plant.inputs[i].unit) for i in driven)
+    z = _signals(tuple((f"control.{name}", "1") for name in control["states"]))
+    v = _signals(tuple((f"{plant.inputs[i].name}.put_out", plant.inputs[i].unit) for i in driven))
     assert A.shape == (n + k + p, n + k + p)
     return dataclasses.replace(
         plant,
