@@ -10,6 +10,8 @@ use klingel_physics::{Dual, Scalar};
 use nalgebra::{DMatrix, DVector};
 
 const MAX_ITERATIONS: usize = 60;
+/// The Jacobian is kept as long as each step with it is shorter than this part of the one before.
+const LEADS_ON: f64 = 0.1;
 /// A step that is this short and no longer gets shorter is rounding.
 const STALLED: f64 = 1e-7;
 /// Parts of the speed by which a detour goes, and in how many steps it comes back.
@@ -38,7 +40,7 @@ pub struct Steady {
     pub inputs: Vec<f64>,
     /// Of the PI blocks.
     pub integrals: Vec<f64>,
-    /// Newton steps, those on the way into the curve included.
+    /// Newton steps, each with a Jacobian of its own, those on the way into the curve included.
     pub iterations: usize,
 }
 
@@ -148,7 +150,8 @@ impl<'a> Problem<'a> {
     }
 
     /// Newton's method, damped as Deuflhard's natural test wants it: the next step of the same Jacobian must be shorter
-    /// than this one (Newton Methods for Nonlinear Problems, 2004, sec. 3.3).
+    /// than this one (Newton Methods for Nonlinear Problems, 2004, sec. 3.3). Where that is much shorter, it is taken,
+    /// and so on: a Jacobian and its factors cost as much as twenty steps with them.
     fn newton(&self, at: Steady) -> Result<Steady, EngineError> {
         self.iterated(at, true)
     }
@@ -167,22 +170,35 @@ impl<'a> Problem<'a> {
             let solve = |r: &DVector<f64>| lu.solve(&-r).filter(|d| d.iter().all(|d| d.is_finite()));
             let step = solve(&residual).ok_or_else(|| fail(worst))?;
             at.iterations += 1;
-            let size = self.size(&at, &step);
+            let mut size = self.size(&at, &step);
             if size < TOLERANCE || (size < STALLED && size > 0.5 * before) {
                 return Ok(self.moved(&at, &step, 1.0));
             }
-            before = size;
+            let mut ahead_of = |at: &Steady| {
+                let ahead = self.plain(at, &mut plain).ok().and_then(|r| solve(&r))?;
+                Some((self.size(at, &ahead), ahead))
+            };
             let mut share = (WHEEL_STEP / self.wheel_step(&step)).min(1.0);
             let mut next = self.moved(&at, &step, share);
+            let mut ahead = None;
             while damped && share > LEAST_SHARE {
-                let ahead = self.plain(&next, &mut plain).ok().and_then(|r| solve(&r));
-                if ahead.is_some_and(|ahead| self.size(&at, &ahead) < size * (1.0 - 0.25 * share)) {
+                ahead = ahead_of(&next).filter(|(length, _)| *length < size * (1.0 - 0.25 * share));
+                if ahead.is_some() {
                     break;
                 }
                 share *= 0.5;
                 next = self.moved(&at, &step, share);
             }
             at = next;
+            while let Some((length, step)) = ahead.filter(|(length, _)| *length < LEADS_ON * size) {
+                at = self.moved(&at, &step, (WHEEL_STEP / self.wheel_step(&step)).min(1.0));
+                size = length;
+                ahead = ahead_of(&at);
+            }
+            if size < TOLERANCE {
+                return Ok(at);
+            }
+            before = size;
         }
         Err(self.failed(MAX_ITERATIONS, worst))
     }

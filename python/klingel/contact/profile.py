@@ -4,6 +4,7 @@ Checked when made: finite, y rising, enough points, metres rather than millimetr
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Self
 
@@ -16,6 +17,13 @@ from klingel.errors import InputError
 from klingel.units import Quantity, to_si
 
 Values = NDArray[np.float64]
+
+
+@lru_cache(maxsize=32)
+def _sampled(standard: str) -> tuple[Values, Values]:
+    """Points of a curve that the core knows by name; a sweep asks for the same one every time."""
+    y, z = core().profile(standard)
+    return y, z
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +64,7 @@ class Profile:
 
     @classmethod
     def _standard(cls, name: str, standard: str) -> Self:
-        y, z = core().profile(standard)
-        return cls(name, y, z, standard)
+        return cls(name, *_sampled(standard), standard)
 
     @classmethod
     def s1002(cls) -> Self:

@@ -1,33 +1,23 @@
 """Eigenvalues of a vehicle's model, fast and clean: the free arc length taken out, left and right halves apart.
-On straight track what is symmetric and what is antisymmetric do not meet: two problems of half the order each."""
+Those of a sampled model are given as of a continuous one, and the bare memory of its controllers is told apart."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
-import scipy.linalg
-import scipy.sparse
 from numpy.typing import NDArray
-from scipy.sparse.csgraph import connected_components
 
+from klingel.linear.halves import Halves, Part, parts
 from klingel.linear.model import LinearModel
 
 Matrix = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-Number = TypeVar("Number", np.float64, np.complex128)
-
 GONE = 1e-3
 """Sampled eigenvalues below this magnitude are memory of delays, gone within a few samples."""
-
-MEETS = 1e-10
-"""Entries of the balanced matrix below this share of its largest one are rounding: its parts do not meet there."""
-
-SIDE = re.compile(r"(?<![a-z])(left|right)(?![a-z])")
 
 
 class Eigen(NamedTuple):
@@ -41,31 +31,38 @@ class Eigen(NamedTuple):
     right: Complex
 
 
-def eigen(model: LinearModel, *, left: bool = True) -> Eigen:
+def eigen(model: LinearModel) -> Eigen:
     """Eigenvalues and eigenvectors of a model, in no order.
 
-    Right vectors have unit length in balanced states, left ones are their inverse: left^H right = 1; without `left`
-    there are none of those (no columns), which saves a third of the time.
+    Right vectors have unit length in balanced states, left ones are their inverse: left^H right = 1.
     """
-    reduced = _Reduced.of(model)
-    parts = [_part(block, left) for block in reduced.blocks()]
-    values = np.concatenate([p.values for p in parts])
-    back, right = (np.zeros((reduced.A.shape[0], len(values)), dtype=complex) for _ in range(2))
-    column = 0
-    for p in parts:
-        columns = slice(column, column + len(p.values))
-        right[p.at, columns] = p.right
-        if left:
-            back[p.at, columns] = p.left
-        column += len(p.values)
-    lefts = reduced.whole_left(back) if left else np.zeros((len(model.states), 0), dtype=complex)
-    return Eigen(continuous(values, model.sample_time), lefts, reduced.whole_right(right, values))
+    free = _Free.of(model)
+    found = [(part, *_vectors(part.matrix)) for part in free.parts]
+    values = np.concatenate([values for _, values, _ in found])
+    right = _side_by_side([(part, vectors * part.scale[:, None]) for part, _, vectors in found])
+    left = _side_by_side([(part, _inverse(vectors).conj().T / part.scale[:, None]) for part, _, vectors in found])
+    return Eigen(continuous(values, model.sample_time), free.whole_left(left), free.whole_right(right, values))
+
+
+def live(model: LinearModel) -> tuple[Complex, Complex]:
+    """Of the vehicle's own eigenvalues (`lives`) one of each conjugate pair [1/s] (k), and their right vectors (n x k).
+
+    They are what is followed over a parameter; in no order, in half the time of `eigen`.
+    """
+    free = _Free.of(model)
+    kept = []
+    for part in free.parts:
+        z, vectors = _vectors(part.matrix)
+        upper = lives(continuous(z, model.sample_time), model.sample_time) & (z.imag >= 0.0)
+        kept.append((part, z[upper], vectors[:, upper] * part.scale[:, None]))
+    values = np.concatenate([z for _, z, _ in kept])
+    right = _side_by_side([(part, vectors) for part, _, vectors in kept])
+    return continuous(values, model.sample_time), free.whole_right(right, values)
 
 
 def eigenvalues(model: LinearModel) -> Complex:
-    """The eigenvalues alone, in a third of the time."""
-    reduced = _Reduced.of(model)
-    values = np.concatenate([np.linalg.eigvals(block.matrix) for block in reduced.blocks()])
+    """The eigenvalues alone, in a third of the time of `eigen`."""
+    values = np.concatenate([np.linalg.eigvals(part.matrix) for part in _Free.of(model).parts])
     return continuous(values, model.sample_time)
 
 
@@ -98,89 +95,63 @@ def continuous(values: Complex, sample_time: float | None) -> Complex:
     return s
 
 
-class _Block(NamedTuple):
-    """States that meet no others; scale: of the balanced ones in the states' own."""
-
-    at: NDArray[np.intp]
-    matrix: Matrix
-    scale: Matrix
-
-
-class _Part(NamedTuple):
-    at: NDArray[np.intp]
-    values: Complex
-    left: Complex
-    right: Complex
-
-
 @dataclass(frozen=True)
-class _Reduced:
-    """A on sums and differences of left and right states, without the arc length of the first body.
+class _Free:
+    """A model's states, folded, without the arc length of the first body.
 
-    `pairs`: places of left and right states; `along`: of all arc lengths; `first`: the row of A that the first of
-    these had, which was dropped; `free`: its eigenvalue in A.
+    parts: that do not meet; along: places of all arc lengths in the model; first: the row of A that the first of these
+    had, which was dropped; value: its eigenvalue in A.
     """
 
-    A: Matrix
-    pairs: tuple[list[int], list[int]]
-    along: tuple[int, ...]
+    parts: list[Part]
+    halves: Halves
+    along: list[int]
     first: Matrix
-    free: float
+    value: float
 
     @classmethod
-    def of(cls, model: LinearModel) -> _Reduced:
+    def of(cls, model: LinearModel) -> _Free:
         names = [state.name for state in model.states]
-        along = tuple(i for i, name in enumerate(names) if name.endswith(".s"))
-        free = 0.0 if model.sample_time is None else 1.0
-        A, first = model.A, np.zeros(len(names))
-        if not _slides(A, along, free):
-            along = ()
+        along = [i for i, name in enumerate(names) if name.endswith(".s")]
+        value = 0.0 if model.sample_time is None else 1.0
+        A = model.A
+        if not _slides(A, along, value):
+            along = []
+        first = A[along[0]] if along else np.zeros(len(names))
         if along:
-            first = A[along[0]]
             A = A.copy()
-            A[list(along)] -= first
-            keep = [i for i in range(len(names)) if i != along[0]]
-            A, names = A[np.ix_(keep, keep)], [names[i] for i in keep]
-        pairs = _pairs(names)
-        return cls(_folded(_folded(A, pairs).T, pairs).T, pairs, along, first, free)
-
-    def blocks(self) -> Iterator[_Block]:
-        balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
-        meets = np.abs(balanced) > MEETS * np.abs(balanced).max()
-        count, label = connected_components(scipy.sparse.csr_array(meets), directed=False)
-        for k in range(count):
-            at = np.flatnonzero(label == k)
-            yield _Block(
-                at, np.asarray(balanced[np.ix_(at, at)], dtype=np.float64), np.asarray(scale[at], dtype=np.float64)
-            )
+            A[along] -= first
+        halves = Halves.of(names, without=along[:1])
+        return cls(parts(halves.folded(A)), halves, along, first, value)
 
     def whole_left(self, left: Complex) -> Complex:
         """Left vectors over the model's states: those of the dropped arc length take what is subtracted from others."""
-        own = _folded(left, self.pairs)
-        if not self.along:
-            return np.asarray(own)
-        whole = np.insert(own, self.along[0], 0.0, axis=0)
-        whole[self.along[0]] = -whole[list(self.along)].sum(axis=0)
-        return np.asarray(whole)
+        whole = self.halves.unfolded_rows(left)
+        if self.along:
+            whole[self.along[0]] = -whole[self.along].sum(axis=0)
+        return whole
 
     def whole_right(self, right: Complex, values: Complex) -> Complex:
         """Right vectors over the model's states: the dropped arc length follows from its own equation."""
-        own = _folded(right, self.pairs)
-        if not self.along:
-            return np.asarray(own)
-        whole = np.insert(own, self.along[0], 0.0, axis=0)
-        whole[list(self.along)] += (self.first @ whole) / (values - self.free)
-        return np.asarray(whole)
+        whole = self.halves.unfolded_rows(right)
+        if self.along:
+            whole[self.along] += (self.first @ whole) / (values - self.value)
+        return whole
 
 
-def _part(block: _Block, left: bool) -> _Part:
-    values, vectors = np.linalg.eig(block.matrix)
-    values, vectors = values.astype(np.complex128), vectors.astype(np.complex128)
-    inverse = _inverse(vectors) if left else np.zeros((0, len(values)), dtype=np.complex128)
-    scale = block.scale[:, None]
-    return _Part(
-        block.at, values, np.asarray(inverse.conj().T / scale), np.asarray(vectors * scale, dtype=np.complex128)
-    )
+def _vectors(matrix: Matrix) -> tuple[Complex, Complex]:
+    values, vectors = np.linalg.eig(matrix)
+    return values.astype(np.complex128), vectors.astype(np.complex128)
+
+
+def _side_by_side(vectors: Sequence[tuple[Part, Complex]]) -> Complex:
+    """Vectors of the parts as columns over all of their states."""
+    whole = np.zeros((sum(len(part.at) for part, _ in vectors), sum(v.shape[1] for _, v in vectors)), dtype=complex)
+    column = 0
+    for part, own in vectors:
+        whole[part.at, column : column + own.shape[1]] = own
+        column += own.shape[1]
+    return whole
 
 
 def _inverse(vectors: Complex) -> Complex:
@@ -198,19 +169,3 @@ def _slides(A: Matrix, along: Sequence[int], free: float) -> bool:
     moved = A[:, list(along)].sum(axis=1)
     moved[list(along)] -= free
     return bool(np.abs(moved).max() <= 1e-9 * max(np.abs(A[:, list(along)]).max(), 1.0))
-
-
-def _pairs(names: Sequence[str]) -> tuple[list[int], list[int]]:
-    """Places of left states and of the right ones that differ from them in the side alone."""
-    places = {name: i for i, name in enumerate(names)}
-    both = [(i, places.get(SIDE.sub("right", name), i)) for name, i in places.items() if "left" in name]
-    return [i for i, j in both if i != j], [j for i, j in both if i != j]
-
-
-def _folded(rows: NDArray[Number], pairs: tuple[list[int], list[int]]) -> NDArray[Number]:
-    """(left + right)/sqrt 2 and (left - right)/sqrt 2 in the rows of both; done twice it changes nothing."""
-    left, right = pairs
-    folded = rows.copy()
-    folded[left] = (rows[left] + rows[right]) * np.sqrt(0.5)
-    folded[right] = (rows[left] - rows[right]) * np.sqrt(0.5)
-    return folded

@@ -13,7 +13,7 @@ from scipy.optimize import linear_sum_assignment
 
 from klingel.errors import InputError
 from klingel.linear import parameters
-from klingel.linear.blocks import Complex, eigen, lives
+from klingel.linear.blocks import Complex, live
 from klingel.linear.model import LinearModel
 from klingel.linear.modes import STILL, Mode, modes
 from klingel.linear.sweep import Linearised, Sweep
@@ -162,10 +162,8 @@ class _Seen(NamedTuple):
 
 
 def _seen(model: LinearModel) -> _Seen:
-    values, _, right = eigen(model, left=False)
-    upper = lives(values, model.sample_time) & (values.imag >= 0.0)
-    roots = values[upper]
-    return _Seen(roots, right[:, upper], roots.copy(), np.zeros(0, dtype=np.intp))
+    roots, shapes = live(model)
+    return _Seen(roots, shapes, roots.copy(), np.zeros(0, dtype=np.intp))
 
 
 def _scaled(shapes: Complex, weights: NDArray[np.float64]) -> Complex:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from klingel.errors import InputError
 from klingel.linear.blocks import eigen, lives
@@ -93,7 +94,7 @@ def modes(
     structure = Structure(lower(of) if isinstance(of, Scenario) else of, model, plant)
     values, left, right = eigen(model)
     counted = np.flatnonzero(lives(values, model.sample_time) & (values.imag >= 0.0))
-    found = [_mode(structure, complex(values[i]), left[:, i], right[:, i]) for i in counted]
+    found = _modes(structure, values[counted], left[:, counted], right[:, counted])
     return tuple(sorted(found, key=lambda m: (not m.oscillates, m.frequency if m.oscillates else -m.eigenvalue.real)))
 
 
@@ -121,26 +122,36 @@ def table(found: tuple[Mode, ...]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["name", "frequency", "damping", "real", "imag", "body", "element"])
 
 
-def _mode(structure: Structure, s: complex, left: Shape, right: Shape) -> Mode:
-    shape = _turned(structure, right)
+def _modes(structure: Structure, values: Shape, left: Shape, right: Shape) -> list[Mode]:
+    """Of eigenvalues (k) and their left and right vectors as columns."""
+    shapes = _turned(structure, right)
     factors = np.conj(left) * right
-    parts = {name: float(abs(factors[places].sum())) for name, places in structure.groups.items() if len(places)}
-    whole = sum(parts.values())
+    parts = {name: np.abs(factors[places].sum(axis=0)) for name, places in structure.groups.items() if len(places)}
+    whole = np.sum(list(parts.values()), axis=0)
     parts = {name: share / whole for name, share in parts.items()}
-    bodies, elements = structure.kinetic(shape), structure.potential(shape)
-    seen = Guess(structure, complex(s), shape, parts, np.abs(factors), bodies)
-    return Mode(guess(seen), complex(s), shape, _shares(bodies), _shares(elements), parts)
+    bodies, elements = structure.kinetic(shapes), structure.potential(shapes)
+    found = []
+    for k, s in enumerate(values):
+        kinetic, potential, shares = _at(bodies, k), _at(elements, k), _at(parts, k)
+        seen = Guess(structure, complex(s), shapes[:, k], shares, np.abs(factors[:, k]), kinetic)
+        found.append(Mode(guess(seen), complex(s), shapes[:, k], _shares(kinetic), _shares(potential), shares))
+    return found
 
 
-def _turned(structure: Structure, shape: Shape) -> Shape:
-    """With its most energetic velocity real and positive, and a unit kinetic energy where it has any."""
-    energies = [(float(e), i) for b in structure.bodies for e, i in zip(b.energies(shape), b.rates, strict=True)]
-    energies += [(0.25 * inertia * abs(shape[i]) ** 2, i) for i, inertia in structure.rotors.values()]
-    most, place = max((e, i) for e, i in energies if i >= 0)
-    lead = shape[place] if most > 0.0 else shape[np.argmax(np.abs(shape))]
-    total = sum(structure.kinetic(shape).values())
-    scale = np.sqrt(total) if total > 0.0 else abs(lead)
-    return np.asarray(shape * (np.conj(lead) / abs(lead) / scale))
+def _at(each: Mapping[str, NDArray[np.float64]], k: int) -> dict[str, float]:
+    return {name: float(values[k]) for name, values in each.items()}
+
+
+def _turned(structure: Structure, shapes: Shape) -> Shape:
+    """Each with its most energetic velocity real and positive, and a unit kinetic energy where it has any."""
+    moving = [(e, i) for b in structure.bodies for e, i in zip(b.energies(shapes), b.rates, strict=True) if i >= 0]
+    moving += [(0.25 * inertia * np.abs(shapes[i]) ** 2, i) for i, inertia in structure.rotors.values()]
+    energies, places = np.array([e for e, _ in moving]), np.array([i for _, i in moving])
+    most = np.where(energies.max(axis=0) > 0.0, places[energies.argmax(axis=0)], np.abs(shapes).argmax(axis=0))
+    lead = shapes[most, np.arange(shapes.shape[1])]
+    total = np.sum(list(structure.kinetic(shapes).values()), axis=0)
+    scale = np.where(total > 0.0, np.sqrt(total), np.abs(lead))
+    return np.asarray(shapes * (np.conj(lead) / np.abs(lead) / scale))
 
 
 def _shares(energies: Mapping[str, float]) -> dict[str, float]:

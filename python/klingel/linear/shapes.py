@@ -1,5 +1,6 @@
 """What a mode shape moves and strains: bodies, joints and elements of a spec on the states of a linear model.
-Energies are means over one cycle of the shape q e^(lambda t); docs/theory/linear.md derives them."""
+Energies are means over one cycle of the shape q e^(lambda t), of one shape (n) or several (n x k);
+docs/theory/linear.md derives them."""
 
 from __future__ import annotations
 
@@ -34,9 +35,9 @@ class Body:
     rates: tuple[int, ...]
 
     def energies(self, shape: Shape) -> NDArray[np.float64]:
-        """Mean kinetic energy along x, y, z and about x, y, z [J]."""
+        """Mean kinetic energy along x, y, z and about x, y, z [J], (6) or (6 x k)."""
         weights = np.array([self.mass] * 3 + list(self.inertia))
-        return np.asarray(0.25 * weights * np.abs(_taken(shape, self.rates)) ** 2)
+        return np.asarray((0.25 * weights * np.abs(_taken(shape, self.rates)).T ** 2).T)
 
     def moves(self, shape: Shape) -> Shape:
         """Its part of a shape: s, y, z [m], roll, pitch, yaw [rad]."""
@@ -51,10 +52,10 @@ class Spring:
     at: tuple[int, ...]
     stiffness: Matrix
 
-    def energy(self, shape: Shape) -> float:
-        """Mean over a cycle [J]."""
+    def energy(self, shape: Shape) -> Matrix:
+        """Mean over a cycle [J], a number or (k)."""
         q = shape[list(self.at)]
-        return float(0.25 * np.real(np.conj(q) @ self.stiffness @ q))
+        return np.asarray(0.25 * np.real(np.sum(np.conj(q) * (self.stiffness @ q), axis=0)))
 
 
 class Structure:
@@ -116,24 +117,25 @@ class Structure:
         known["controller"] = [i for i in range(len(self.model.states)) if i not in taken]
         return {name: np.array(places, dtype=np.intp) for name, places in known.items()}
 
-    def kinetic(self, shape: Shape) -> dict[str, float]:
-        """Mean kinetic energy of every body, rotor and motor [J]."""
-        energies = {body.name: float(body.energies(shape).sum()) for body in self.bodies}
+    def kinetic(self, shape: Shape) -> dict[str, Matrix]:
+        """Mean kinetic energy of every body, rotor and motor [J], a number or (k) each."""
+        energies = {body.name: np.asarray(body.energies(shape).sum(axis=0)) for body in self.bodies}
         for name, (place, inertia) in self.rotors.items():
-            energies[name] = 0.25 * inertia * abs(shape[place]) ** 2
+            energies[name] = np.asarray(0.25 * inertia * np.abs(shape[place]) ** 2)
         of = {body.name: body for body in self.bodies}
         for d in self.spec.get("drives", ()):
             # the motor's speed is that relative to its stator on the body, which turns forward at -wy
             speed = d["gear_sense"] * shape[self.places[f"{d['name']}.motor_speed"]]
-            speed -= _taken(shape, of[d["body"]].rates)[4]
-            energies[f"{d['name']}.motor"] = 0.25 * d["rotor_inertia"] * abs(speed) ** 2
+            speed = speed - _taken(shape, of[d["body"]].rates)[4]
+            energies[f"{d['name']}.motor"] = np.asarray(0.25 * d["rotor_inertia"] * np.abs(speed) ** 2)
         return energies
 
-    def potential(self, shape: Shape) -> dict[str, float]:
-        """Mean elastic energy of every spring, series spring, stop, shaft and wheelset on its contacts [J]."""
-        energies: dict[str, float] = {}
+    def potential(self, shape: Shape) -> dict[str, Matrix]:
+        """Mean elastic energy of every spring, series spring, stop, shaft and wheelset on its contacts [J], a number or
+        (k) each."""
+        energies: dict[str, Matrix] = {}
         for spring in self.springs:
-            energies[spring.name] = energies.get(spring.name, 0.0) + spring.energy(shape)
+            energies[spring.name] = energies.get(spring.name, np.zeros(shape.shape[1:])) + spring.energy(shape)
         return energies
 
     @cached_property
@@ -220,8 +222,10 @@ class Structure:
 
 
 def _taken(vector: NDArray[Any], places: Sequence[int]) -> NDArray[Any]:
-    """Entries of a vector, zero where there is none (-1)."""
-    return np.array([vector[i] if i >= 0 else 0.0 for i in places])
+    """Rows of a vector or of several as columns, zero where there is none (-1)."""
+    taken = vector[list(places)]
+    taken[np.array(places) < 0] = 0.0
+    return taken
 
 
 def _slopes(stop: Mapping[str, Any], deflection: Matrix) -> list[float]:

@@ -4,11 +4,13 @@ Commands are put out one sample after the measurement they were made from, as in
 from __future__ import annotations
 
 import dataclasses
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from scipy.linalg import expm
 
+from klingel.linear.halves import Halves, parts
 from klingel.linear.model import LinearModel, Matrix, Signal
 from klingel.linear.operating import solve, steady_spec
 from klingel.scenario import Scenario
@@ -40,16 +42,12 @@ def linearise(scenario: Scenario, *, at: Quantity | None = None, controllers: bo
 
 def of_raw(raw: dict[str, Any], name: str, speed: float, *, controllers: bool = True) -> LinearModel:
     """The model from what the core gives."""
-
-    def signals(key: str) -> tuple[Signal, ...]:
-        return tuple(Signal(*each) for each in raw[key])
-
     plant = LinearModel(
         name=name,
         speed=speed,
-        states=signals("states"),
-        inputs=signals("inputs"),
-        outputs=signals("outputs"),
+        states=_signals(tuple(raw["states"])),
+        inputs=_signals(tuple(raw["inputs"])),
+        outputs=_signals(tuple(raw["outputs"])),
         A=raw["a"],
         B=raw["b"],
         C=raw["c"],
@@ -62,13 +60,31 @@ def of_raw(raw: dict[str, Any], name: str, speed: float, *, controllers: bool = 
     return close(plant, raw["control"]) if controllers and raw["control"] is not None else plant
 
 
+@lru_cache(maxsize=12)
+def _signals(named: tuple[tuple[str, str], ...]) -> tuple[Signal, ...]:
+    """Names and units, which do not change along a sweep."""
+    return tuple(Signal(*each) for each in named)
+
+
 def held(plant: LinearModel, sample_time: float) -> tuple[Matrix, Matrix]:
-    """Transition over a sample with held inputs: exp([[A, B], [0, 0]] T) = [[Phi, Gamma], [0, 1]]."""
-    n, m = plant.B.shape
-    block = np.zeros((n + m, n + m))
-    block[:n, :n], block[:n, n:] = plant.A, plant.B
-    whole = expm(block * sample_time)
-    return whole[:n, :n], whole[:n, n:]
+    """Transition over a sample with held inputs: exp([[A, B], [0, 0]] T) = [[Phi, Gamma], [0, 1]], halves apart.
+
+    Inputs count in units of their largest effect, or they would decide into how many parts the sample is divided.
+    """
+    halves = Halves.of([state.name for state in plant.states])
+    A, B = halves.folded(plant.A), halves.folded_rows(plant.B)
+    phi, gamma = np.zeros_like(A), np.zeros_like(B)
+    for at, balanced, scale in parts(A):
+        b = B[at] / scale[:, None]
+        effect = np.abs(b).max(axis=0)
+        acting = np.flatnonzero(effect)
+        n = len(at)
+        block = np.zeros((n + len(acting), n + len(acting)))
+        block[:n, :n], block[:n, n:] = balanced, b[:, acting] / effect[acting]
+        whole = expm(block * sample_time)[:n] * scale[:, None]
+        phi[np.ix_(at, at)] = whole[:, :n] / scale
+        gamma[np.ix_(at, acting)] = whole[:, n:] * effect[acting]
+    return halves.unfolded(phi), halves.unfolded_rows(gamma)
 
 
 def close(plant: LinearModel, control: dict[str, Any]) -> LinearModel:
@@ -92,8 +108,8 @@ def close(plant: LinearModel, control: dict[str, Any]) -> LinearModel:
     )
     B = np.vstack([gamma, b @ D, d @ D])
     outputs = len(plant.outputs)
-    z = tuple(Signal(f"control.{name}", "1") for name in control["states"])
-    v = tuple(Signal(f"{plant.inputs[i].name}.put_out", plant.inputs[i].unit) for i in driven)
+    z = _signals(tuple((f"control.{name}", "1") for name in control["states"]))
+    v = _signals(tuple((f"{plant.inputs[i].name}.put_out", plant.inputs[i].unit) for i in driven))
     assert A.shape == (n + k + p, n + k + p)
     return dataclasses.replace(
         plant,
