@@ -2,7 +2,7 @@
 Equation numbers are those of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 207-217."""
 
 from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
-from klingel.drives.operating import OperatingPoint, operating_point, operating_table
+from klingel.drives.operating import OperatingPoint, base_speed, operating_point, operating_table
 from klingel.drives.resistance import DavisCoefficients, running_resistance, sncf_general
 from klingel.drives.transfer import DriveTransfer, WheelPair
 
@@ -11,6 +11,7 @@ __all__ = [
     "DriveTransfer",
     "OperatingPoint",
     "WheelPair",
+    "base_speed",
     "field_current",
     "operating_point",
     "operating_table",

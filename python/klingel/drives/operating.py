@@ -7,12 +7,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from klingel.drives.motor import field_current, torque_constant, wheel_torque_max
+from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
 from klingel.drives.resistance import running_resistance
 from klingel.errors import InputError
 
 if TYPE_CHECKING:
-    from klingel.vehicle import Vehicle
+    from klingel.vehicle import Drive, Vehicle
 
 WHEELS = 8
 
@@ -50,23 +50,17 @@ def operating_point(vehicle: Vehicle, speed: float) -> OperatingPoint:
     >>> round(point.wheel_torque), round(point.field_current_normalised, 2)
     (177, 0.61)
     """
-    drive = vehicle.drive
-    if drive is None:
-        raise InputError.single("drive", None, "is missing", remedy=f"{vehicle.name} is hauled; take a driven vehicle")
+    drive = _drive(vehicle)
     if speed <= 0.0:
         raise InputError.single("speed", speed, "must be positive [m/s]", remedy="give the running speed")
-    radius = vehicle.geometry.wheel_radius
-    resistance = running_resistance(vehicle)(speed) / WHEELS
-    torque = resistance * radius
-    motor_speed = speed / radius / drive.gear_ratio
-    air_gap = torque + drive.rotor_damping * motor_speed / drive.gear_ratio
+    resistance, torque, motor_speed, air_gap = _running(vehicle, drive, speed)
     current = field_current(drive, air_gap, motor_speed)
     if current > drive.field_current_rated:
         raise InputError.single(
             "speed",
             speed,
             f"needs a field of {current:.4g} A, rated {drive.field_current_rated:.4g} A",
-            remedy=f"run above the base speed, {speed * current / drive.field_current_rated:.4g} m/s",
+            remedy=f"run above the base speed, {base_speed(vehicle):.4g} m/s",
         )
     kt = torque_constant(drive, current)
     return OperatingPoint(
@@ -80,6 +74,51 @@ def operating_point(vehicle: Vehicle, speed: float) -> OperatingPoint:
         torque_constant=kt,
         armature_voltage=drive.traction_share * drive.armature_voltage_max,
         wheel_torque_max=wheel_torque_max(drive, motor_speed),
+    )
+
+
+def base_speed(vehicle: Vehicle) -> float:
+    """The speed [m/s] at which a driven vehicle runs steadily with the rated field; below, it would need more of it.
+
+    Errors: InputError for a vehicle without drives, and for motors that the running resistance is too much for.
+
+    >>> from klingel import library
+    >>> round(base_speed(library.vehicle("mechatronic_irw")), 2)
+    29.67
+    """
+    from scipy.optimize import brentq
+
+    drive = _drive(vehicle)
+    constant = torque_constant(drive, drive.field_current_rated)
+    no_load = drive.traction_share * drive.armature_voltage_max / constant
+    highest = no_load * drive.gear_ratio * vehicle.geometry.wheel_radius
+
+    def surplus(speed: float) -> float:
+        _, _, motor_speed, air_gap = _running(vehicle, drive, speed)
+        return wheel_torque(drive, drive.field_current_rated, motor_speed) - air_gap
+
+    if surplus(0.0) <= 0.0:
+        remedy = "raise the traction share or the rated field"
+        raise InputError.single("drive", None, "does not hold the running resistance at any speed", remedy=remedy)
+    return float(brentq(surplus, 0.0, highest))
+
+
+def _drive(vehicle: Vehicle) -> Drive:
+    if vehicle.drive is None:
+        raise InputError.single("drive", None, "is missing", remedy=f"{vehicle.name} is hauled; take a driven vehicle")
+    return vehicle.drive
+
+
+def _running(vehicle: Vehicle, drive: Drive, speed: float) -> tuple[float, float, float, float]:
+    """Of a wheel: resistance [N], torque [N m], speed of its motor [rad/s], air-gap torque seen at the wheel [N m]."""
+    radius = vehicle.geometry.wheel_radius
+    resistance = running_resistance(vehicle)(speed) / WHEELS
+    motor_speed = speed / radius / drive.gear_ratio
+    return (
+        resistance,
+        resistance * radius,
+        motor_speed,
+        (resistance * radius + drive.rotor_damping * motor_speed / drive.gear_ratio),
     )
 
 
