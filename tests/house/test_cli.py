@@ -127,7 +127,19 @@ main()
     command = [sys.executable, "-W", "ignore", "-c", interrupt, "run", str(write(tmp_path))]
     ended = subprocess.run(command, capture_output=True, text=True, timeout=60.0, check=False)
     assert ended.returncode == 130
-    assert ended.stderr == "cancelled: finished runs are kept\n"
+    assert ended.stderr == "cancelled\n"
+
+
+@pytest.mark.parametrize("kept", [["1 of 4 runs are kept in out"], []])
+def test_ctrl_c_says_what_a_study_keeps(
+    kept: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt(*kept)
+
+    monkeypatch.setattr("klingel.study.perez2004.run", interrupted)
+    assert cli.run(["study", "perez2004"]) == 130
+    assert capsys.readouterr().err == ": ".join(["cancelled", *kept]) + "\n"
 
 
 def test_ctrl_c_ends_a_run_cleanly(tmp_path: Path) -> None:

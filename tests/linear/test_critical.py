@@ -1,5 +1,6 @@
 """Critical speeds: the search on known curves, the coach without yaw dampers, its limit cycle in the simulator."""
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -124,11 +125,30 @@ def test_bifurcation_of_the_coach(linear: CriticalSpeed) -> None:
     assert any("slows down" in line for line in said)
 
 
+def driven(control: object = None) -> kl.Scenario:
+    return kl.Scenario(kl.library.vehicle("mechatronic_irw"), kl.Track.straight("1 km"), speed=40.0, control=control)
+
+
+def test_a_driven_vehicle_is_swept_from_above_its_base_speed() -> None:
+    found = critical_speed(driven(kl.control.IRWLike()), highest="60 m/s", points=2)
+    assert found.speeds == pytest.approx([30.0, 60.0])
+    with pytest.raises(InputError, match=r"base speed, 29\.67 m/s"):
+        critical_speed(driven(), lowest="29 m/s", points=2)
+
+
 def test_refuses() -> None:
     with pytest.raises(InputError, match="must exceed the lowest speed"):
         critical_speed(scenario(), lowest="50 m/s", highest="40 m/s")
     with pytest.raises(InputError, match="make no sweep"):
         critical_speed(scenario(), points=1)
+
+
+def test_bifurcation_refuses(linear: CriticalSpeed) -> None:
+    stable = dataclasses.replace(linear, outcome="stable throughout", speed=None)
+    with pytest.raises(InputError, match="begin: has no default: the vehicle is stable throughout"):
+        bifurcation(scenario(), linear=stable)
+    with pytest.raises(InputError, match=r"begin = 9\.0: must exceed the lowest speed 10 m/s"):
+        bifurcation(scenario(), linear=stable, begin="9 m/s")
 
 
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -140,3 +160,11 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "km/h" in said
     assert out.stat().st_size > 20_000
     assert rows.read_text().startswith("speed,growth,damping,frequency")
+
+
+def test_command_without_a_range(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    options = ["--vehicle", "mechatronic_irw", "--control", "irw_like", "--highest", "60 m/s"]
+    assert cli.run(["critical-speed", *options, "--out", str(tmp_path / "c.png")]) == 0
+    assert "stable throughout" in capsys.readouterr().out
+    assert cli.run(["critical-speed", *options, "--nonlinear", "--out", str(tmp_path / "c.png")]) == 2
+    assert "begin: has no default" in capsys.readouterr().err

@@ -125,3 +125,25 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "bogie hunting" in capsys.readouterr().out
     assert out.read_bytes().startswith(b"<?xml")
     assert rows.read_text().startswith("speed,branch,name,real,imag,frequency,damping")
+
+
+@pytest.mark.parametrize(
+    ("options", "first", "last"),
+    [
+        (["--vehicle", "mechatronic_irw", "--control", "irw_like"], 30.0, 80.0),
+        (["--vehicle", "manchester_coach"], 15.0, 80.0),
+        (["--vehicle", "manchester_coach", "--speed", "40 m/s", "--parameter", "friction"], 0.175, 0.7),
+        (["--vehicle", "manchester_coach", "--speed", "40 m/s", "--parameter", "friction", "--to", "0.3"], 0.175, 0.3),
+    ],
+)
+def test_command_without_a_range(tmp_path: Path, options: list[str], first: float, last: float) -> None:
+    rows = tmp_path / "locus.csv"
+    written = ["--points", "2", "--out", str(tmp_path / "locus.png"), "--table", str(rows)]
+    assert cli.run(["rootlocus", *options, *written]) == 0
+    values = np.unique(np.loadtxt(rows, delimiter=",", skiprows=1, usecols=0))
+    assert values == pytest.approx([first, last])
+
+
+def test_command_refuses_a_range_of_one_value(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.run(["rootlocus", "--vehicle", "manchester_coach", "--from", "40 m/s", "--to", "40 m/s"]) == 2
+    assert "is the first value too" in capsys.readouterr().err

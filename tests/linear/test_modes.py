@@ -92,6 +92,24 @@ def test_a_model_alone_does_not_say_what_moves() -> None:
         modes(two_masses(0.0)[0])
 
 
+@pytest.mark.parametrize(
+    ("of", "other", "said"),
+    [
+        ("manchester_coach", "mechatronic_irw", "the model has no state bogie1.wheelset1.left.spin_speed"),
+        ("mechatronic_irw", "manchester_coach", "the model has no state bogie1.wheelset1.spin.spin_speed"),
+    ],
+)
+def test_a_scenario_of_another_vehicle_is_refused(of: str, other: str, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        modes(kl.linearise(scenario(of)), scenario(other))
+
+
+def test_a_model_with_further_bodies_is_refused() -> None:
+    plant, spec = two_masses(0.0)
+    with pytest.raises(InputError, match="of = 'two masses': is not what the model was made of: it has no body second"):
+        modes(plant, spec | {"bodies": spec["bodies"][:1], "bushings": []})
+
+
 def test_joints_on_a_canted_curve_against_differences() -> None:
     track = UniformTrack(1.0 / 300.0, 0.1)
     a = np.array([20.0, 0.02, -0.6, 0.01, 0.002, -0.003])
@@ -221,7 +239,7 @@ def test_springs_are_the_jacobian_of_the_model(at: str | None, tolerance: float)
 def test_modes_of_the_mechatronic_vehicle_with_its_controllers() -> None:
     made = scenario("mechatronic_irw", kl.control.IRWLike())
     found = modes(made)
-    names = {mode.name.partition(",")[0] for mode in found}
+    names = {mode.name.partition(",")[0].partition(" #")[0] for mode in found}
     expected = {"lower sway", "upper sway", "body bounce", "body pitch", "axle wind-up", "wheelset steering"}
     assert expected | {"motor and shaft torsion", "steering actuator", "controller", "motor"} <= names
     assert all(mode.eigenvalue.real < 0.0 for mode in found)
@@ -229,6 +247,15 @@ def test_modes_of_the_mechatronic_vehicle_with_its_controllers() -> None:
     assert {round(mode.frequency, -1) for mode in torsion} == {50.0, 60.0, 70.0}
     alone = modes(made, controllers=False)
     assert not any(mode.name.startswith("controller") for mode in alone)
+
+
+@pytest.mark.parametrize(("name", "control"), [("manchester_coach", None), ("mechatronic_irw", kl.control.IRWLike())])
+def test_only_groups_share_a_name(name: str, control: Any) -> None:
+    found = modes(scenario(name, control))
+    for mode in found:
+        for other in found:
+            if mode.name == other.name:
+                assert abs(mode.eigenvalue - other.eigenvalue) < 0.04 * abs(mode.eigenvalue), mode.name
 
 
 def test_memory_of_controllers_is_no_mode() -> None:

@@ -74,3 +74,17 @@ def test_repeated_eigenvalues_are_refused() -> None:
     A = np.block([[block, np.eye(2)], [np.zeros((2, 2)), block]])
     with pytest.raises(InputError, match="repeated"):
         eigenvalue_derivatives(lambda p: model(p * A, np.zeros((4, 1)), np.zeros((1, 4)), np.zeros((1, 1))), 1.0)
+
+
+def test_the_least_damped_oscillation_below_20_hz_is_looked_at() -> None:
+    """Two masses beside each other: 5 Hz, damped by 5 %, and 50 Hz by 1 %."""
+
+    def family(k: float, fast: float = 2.0 * np.pi * 50.0):
+        slow, quick = chain([1.0], [k], [0.1 * np.sqrt(k)]), chain([1.0], [fast**2], [0.02 * fast])
+        A = np.block([[slow.A, np.zeros((2, 2))], [np.zeros((2, 2)), quick.A]])
+        return model(A, np.zeros((4, 1)), np.zeros((1, 4)), np.zeros((1, 1)))
+
+    (s,), _ = eigenvalue_derivatives(family, (2.0 * np.pi * 5.0) ** 2)
+    assert abs(s) == pytest.approx(2.0 * np.pi * 5.0)
+    with pytest.raises(InputError, match="none of them oscillates below 20 Hz"):
+        eigenvalue_derivatives(lambda k: family(k, 500.0), (2.0 * np.pi * 30.0) ** 2)

@@ -152,7 +152,7 @@ def test_ctrl_c_keeps_finished_runs_and_cancels_the_rest(simulated, tmp_path, mo
 
     monkeypatch.setattr(result, "simulate", first_only)
     monkeypatch.setattr("klingel.study.runner._watch", interrupt)
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(KeyboardInterrupt, match="1 of 4 runs are kept in"):
         perez2004.run(tmp_path, jobs=1, radii=[800.0], friction_variants=False, console=QUIET)
     assert len(watches) == 2
     assert list(pd.read_csv(tmp_path / "summary.csv")["vehicle"]) == ["irw_like"]

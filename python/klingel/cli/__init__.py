@@ -36,9 +36,9 @@ def run(arguments: list[str]) -> int:
     return 0
 
 
-def _cancelled(kept: str = "finished runs are kept") -> int:
+def _cancelled(*kept: str) -> int:
     # Plain, as Ctrl-C may have come while the packages for colour were being imported.
-    print(f"cancelled: {kept}", file=sys.stderr)
+    print(": ".join(("cancelled", *kept)), file=sys.stderr)
     return CANCELLED
 
 

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from klingel.cli import linear
+from klingel.cli.output import print_table
 
 app = typer.Typer(
     name="klingel",
@@ -54,9 +55,16 @@ def perez2004(
     variants: Annotated[bool, typer.Option(help="Also friction 0.25 and 0.30 and the curvature database.")] = True,
 ) -> None:
     """Combined active steering and traction: three vehicles, five curves (Perez et al. 2004)."""
+    from klingel.errors import RunCancelledError
     from klingel.study import perez2004 as body
 
-    body.run(out, jobs=jobs, radii=only or None, friction_variants=variants, database_variant=variants)
+    try:
+        body.run(out, jobs=jobs, radii=only or None, friction_variants=variants, database_variant=variants)
+    except KeyboardInterrupt as ended:
+        cancelled = RunCancelledError("the study was cancelled")
+        for kept in ended.args:
+            cancelled.add_note(kept)
+        raise cancelled from None
 
 
 @study.command()
@@ -164,13 +172,12 @@ def vehicles(
     name: Annotated[str | None, typer.Argument(help="Show the parameters of this one, with status and source.")] = None,
 ) -> None:
     """List the library's vehicles, or the parameters of one."""
-    from rich.console import Console
     from rich.table import Table
 
     from klingel import library
 
     if name is None:
-        table = Table("vehicle", "mass [t]", "wheels", "description")
+        table = Table("vehicle", r"mass \[t]", "wheels", "description")
         for each in library.names():
             vehicle = library.vehicle(each)
             wheels = "independent" if vehicle.independent_wheels else "solid"
@@ -180,13 +187,12 @@ def vehicles(
         for p in library.vehicle(name).parameters():
             value = ", ".join(f"{v:g}" for v in p.value) if isinstance(p.value, tuple) else f"{p.value:g}"
             table.add_row(p.key, value, "" if p.unit == "1" else p.unit, p.status, ", ".join(p.source))
-    Console().print(table)
+    print_table(table)
 
 
 @app.command()
 def doctor() -> None:
     """Check this installation: extension, packages, library files."""
-    from rich.console import Console
     from rich.table import Table
 
     from klingel.doctor import examine
@@ -195,6 +201,6 @@ def doctor() -> None:
     table = Table("", "what", "found")
     for finding in findings:
         table.add_row("[green]ok[/]" if finding.good else "[red]no[/]", finding.what, finding.found)
-    Console().print(table)
+    print_table(table)
     if not all(finding.good for finding in findings):
         sys.exit(1)

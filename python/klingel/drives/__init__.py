@@ -3,7 +3,7 @@ Equation numbers are those of Perez, Busturia, Mei, Vinolas, Annual Reviews in C
 
 from klingel.drives.limits import OperatingLimit, operating_limit, starting_point, traction_torque_max
 from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
-from klingel.drives.operating import OperatingPoint, operating_point, operating_table
+from klingel.drives.operating import OperatingPoint, base_speed, operating_point, operating_table
 from klingel.drives.resistance import DavisCoefficients, running_resistance, sncf_general
 from klingel.drives.transfer import DriveTransfer, WheelPair
 
@@ -13,6 +13,7 @@ __all__ = [
     "OperatingLimit",
     "OperatingPoint",
     "WheelPair",
+    "base_speed",
     "field_current",
     "operating_limit",
     "operating_point",

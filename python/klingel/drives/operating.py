@@ -3,6 +3,7 @@ The torque holds the vehicle against its running resistance on straight level tr
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -42,35 +43,23 @@ def operating_point(vehicle: Vehicle, speed: float) -> OperatingPoint:
     """Steady running of a driven vehicle at `speed` [m/s], each wheel taking an eighth of the running resistance.
 
     The friction CM wM of the rotor is added to the torque asked of Eq. (5), so that the wheel really gets its torque.
-    Below the base speed Eq. (5) would ask for more field than the motor has.
-    Errors: InputError for a vehicle without drives, a torque out of reach, a field current above the rated one.
+    Below the base speed Eq. (5) would ask for more field than the motor has: there the field is the rated one and the
+    voltage what the torque takes. Standing still there is no resistance.
+    Errors: InputError for a vehicle without drives, a torque out of reach.
 
     >>> from klingel import library
     >>> point = operating_point(library.vehicle("mechatronic_irw"), 176 / 3.6)
     >>> round(point.wheel_torque), round(point.field_current_normalised, 2)
     (177, 0.61)
     """
-    drive = vehicle.drive
-    if drive is None:
-        raise InputError.single("drive", None, "is missing", remedy=f"{vehicle.name} is hauled; take a driven vehicle")
+    drive = _drive(vehicle)
     if not speed >= 0.0:
         raise InputError.single("speed", speed, "must not be negative [m/s]", remedy="give the running speed")
-    if speed == 0.0:
-        return _at_rest(drive)
-    radius = vehicle.geometry.wheel_radius
-    resistance = running_resistance(vehicle)(speed) / WHEELS
-    torque = resistance * radius
-    motor_speed = speed / radius / drive.gear_ratio
-    air_gap = torque + drive.rotor_damping * motor_speed / drive.gear_ratio
-    current = field_current(drive, air_gap, motor_speed)
-    if current > drive.field_current_rated:
-        raise InputError.single(
-            "speed",
-            speed,
-            f"needs a field of {current:.4g} A, rated {drive.field_current_rated:.4g} A",
-            remedy=f"run above the base speed, {speed * current / drive.field_current_rated:.4g} m/s",
-        )
+    resistance, torque, motor_speed, air_gap = _running(vehicle, drive, speed)
+    rated = drive.field_current_rated
+    current = min(rated, field_current(drive, air_gap, motor_speed)) if motor_speed > 0.0 else rated
     kt = torque_constant(drive, current)
+    armature_current = drive.gear_ratio * air_gap / kt
     return OperatingPoint(
         speed=speed,
         resistance=resistance,
@@ -78,27 +67,55 @@ def operating_point(vehicle: Vehicle, speed: float) -> OperatingPoint:
         motor_speed=motor_speed,
         field_current=current,
         field_current_normalised=current / drive.field_current_rated,
-        armature_current=drive.gear_ratio * air_gap / kt,
+        armature_current=armature_current,
         torque_constant=kt,
-        armature_voltage=drive.traction_share * drive.armature_voltage_max,
-        wheel_torque_max=wheel_torque_max(drive, motor_speed),
+        armature_voltage=kt * motor_speed + drive.armature_resistance * armature_current,
+        wheel_torque_max=wheel_torque_max(drive, motor_speed) if motor_speed > 0.0 else math.inf,
     )
 
 
-def _at_rest(drive: Drive) -> OperatingPoint:
-    """Standing without torque: full field, no voltage."""
-    current = drive.field_current_rated
-    return OperatingPoint(
-        speed=0.0,
-        resistance=0.0,
-        wheel_torque=0.0,
-        motor_speed=0.0,
-        field_current=current,
-        field_current_normalised=1.0,
-        armature_current=0.0,
-        torque_constant=torque_constant(drive, current),
-        armature_voltage=0.0,
-        wheel_torque_max=wheel_torque(drive, current, 0.0),
+def base_speed(vehicle: Vehicle) -> float:
+    """The speed [m/s] at which a driven vehicle runs steadily with the rated field; below, it would need more of it.
+
+    Errors: InputError for a vehicle without drives, and for motors that the running resistance is too much for.
+
+    >>> from klingel import library
+    >>> round(base_speed(library.vehicle("mechatronic_irw")), 2)
+    29.67
+    """
+    from scipy.optimize import brentq
+
+    drive = _drive(vehicle)
+    constant = torque_constant(drive, drive.field_current_rated)
+    no_load = drive.traction_share * drive.armature_voltage_max / constant
+    highest = no_load * drive.gear_ratio * vehicle.geometry.wheel_radius
+
+    def surplus(speed: float) -> float:
+        _, _, motor_speed, air_gap = _running(vehicle, drive, speed)
+        return wheel_torque(drive, drive.field_current_rated, motor_speed) - air_gap
+
+    if surplus(0.0) <= 0.0:
+        remedy = "raise the traction share or the rated field"
+        raise InputError.single("drive", None, "does not hold the running resistance at any speed", remedy=remedy)
+    return float(brentq(surplus, 0.0, highest))
+
+
+def _drive(vehicle: Vehicle) -> Drive:
+    if vehicle.drive is None:
+        raise InputError.single("drive", None, "is missing", remedy=f"{vehicle.name} is hauled; take a driven vehicle")
+    return vehicle.drive
+
+
+def _running(vehicle: Vehicle, drive: Drive, speed: float) -> tuple[float, float, float, float]:
+    """Of a wheel: resistance [N], torque [N m], speed of its motor [rad/s], air-gap torque seen at the wheel [N m]."""
+    radius = vehicle.geometry.wheel_radius
+    resistance = running_resistance(vehicle)(speed) / WHEELS if speed > 0.0 else 0.0
+    motor_speed = speed / radius / drive.gear_ratio
+    return (
+        resistance,
+        resistance * radius,
+        motor_speed,
+        (resistance * radius + drive.rotor_damping * motor_speed / drive.gear_ratio),
     )
 
 

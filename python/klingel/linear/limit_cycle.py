@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from klingel.errors import InputError, SimulationError
-from klingel.linear.critical import CriticalSpeed, critical_speed
+from klingel.linear.critical import CriticalSpeed, critical_speed, lowest_speed
 from klingel.lower import Spec, lower
 from klingel.result import COMPLETED, simulate_spec
 from klingel.scenario import Scenario
@@ -77,8 +77,8 @@ class Bifurcation:
 def bifurcation(
     scenario: Scenario,
     *,
-    highest: Quantity | None = None,
-    lowest: Quantity = "10 m/s",
+    begin: Quantity | None = None,
+    lowest: Quantity | None = None,
     deceleration: Quantity = "0.5 m/s^2",
     resolution: Quantity = "0.5 m/s",
     linear: CriticalSpeed | None = None,
@@ -86,31 +86,32 @@ def bifurcation(
 ) -> Bifurcation:
     """Limit cycles over speed on straight track.
 
-    highest: where the run that slows down begins, a tenth above the linear critical speed by default; lowest: where it
-    may end; deceleration: of that run; resolution: of the nonlinear critical speed; linear: the linear one if it is
-    known; step: told what is done next. Errors: InputError for a range that is none, and for a vehicle without a linear
-    critical speed when `highest` is not given; SimulationError for a run that ends early, such as by derailing.
+    begin: where the run that slows down begins, a tenth above the linear critical speed by default; lowest: where it
+    may end, as for `critical_speed`; deceleration: of that run; resolution: of the nonlinear critical speed; linear:
+    the linear one if it is known; step: told what is done next. Errors: InputError for a range that is none, and for a
+    vehicle without a linear critical speed when `begin` is not given; SimulationError for a run that ends early, such
+    as by derailing.
     """
     said = step if step is not None else _silent
-    end = to_si(lowest, "m/s", key="lowest")
+    end = lowest_speed(scenario.vehicle) if lowest is None else to_si(lowest, "m/s", key="lowest")
     rate = to_si(deceleration, "m/s^2", key="deceleration")
     fine = to_si(resolution, "m/s", key="resolution")
     if linear is None:
         said("linear critical speed")
         linear = critical_speed(scenario, lowest=end, highest=120.0)
-    begin = _begin(linear, highest, end)
+    first = _begin(linear, begin, end)
     if not (rate > 0.0 and fine > 0.0):
         raise InputError.single("deceleration", deceleration, "must be positive, as the resolution", remedy="give 0.5")
-    said(f"a run that slows down from {begin:.1f} m/s")
-    speeds, amplitudes = envelope(run_at(scenario, begin, duration=(begin - end) / rate, acceleration=-rate))
+    said(f"a run that slows down from {first:.1f} m/s")
+    speeds, amplitudes = envelope(run_at(scenario, first, duration=(first - end) / rate, acceleration=-rate))
     held: list[tuple[float, float]] = []
 
     def hunts(speed: float) -> bool:
         said(f"a run at {speed:.1f} m/s")
-        held.append((speed, sustained(run_down(scenario, begin, speed))))
+        held.append((speed, sustained(run_down(scenario, first, speed))))
         return held[-1][1] > 0.0
 
-    edge = _lowest_cycle(hunts, _dies(speeds, amplitudes), begin, end, fine)
+    edge = _lowest_cycle(hunts, _dies(speeds, amplitudes), first, end, fine)
     return Bifurcation(linear, speeds, amplitudes, tuple(sorted(held)), edge, fine)
 
 
@@ -193,19 +194,19 @@ def _wheelsets(run: xr.Dataset) -> Values:
     return np.array([run[f"{body}.y"].to_numpy() for body in sorted(wheels)])
 
 
-def _begin(linear: CriticalSpeed, highest: Quantity | None, end: float) -> float:
-    if highest is not None:
-        begin = to_si(highest, "m/s", key="highest")
+def _begin(linear: CriticalSpeed, begin: Quantity | None, end: float) -> float:
+    if begin is not None:
+        first = to_si(begin, "m/s", key="begin")
     elif linear.speed is not None:
-        begin = 1.1 * linear.speed
+        first = 1.1 * linear.speed
     else:
-        remedy = "give the highest speed to begin with"
-        raise InputError.single("highest", None, f"has no default: the vehicle is {linear.outcome}", remedy=remedy)
-    if not begin > end > 0.0:
+        remedy = "give the speed that the slowing run begins at"
+        raise InputError.single("begin", None, f"has no default: the vehicle is {linear.outcome}", remedy=remedy)
+    if not first > end > 0.0:
         raise InputError.single(
-            "lowest", end, f"must be below the highest speed {begin:.1f} m/s", remedy="give a range"
+            "begin", first, f"must exceed the lowest speed {end:g} m/s", remedy="begin faster, or lower the lowest"
         )
-    return begin
+    return first
 
 
 def _dies(speeds: Values, amplitudes: Values) -> float:

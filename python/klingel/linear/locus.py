@@ -16,6 +16,7 @@ from klingel.linear import parameters
 from klingel.linear.blocks import Complex, live
 from klingel.linear.model import LinearModel
 from klingel.linear.modes import STILL, Mode, modes
+from klingel.linear.names import numbered
 from klingel.linear.sweep import Linearised, Sweep
 from klingel.scenario import Scenario
 from klingel.units import Quantity, to_si
@@ -118,7 +119,8 @@ def _names(branches: Complex, middle: int, found: Sequence[Mode]) -> tuple[str, 
     there = np.isfinite(branches)
     nearest = np.abs(np.where(there, np.arange(branches.shape[1]) - middle, np.inf)).argmin(axis=1)
     values = branches[np.arange(len(branches)), nearest]
-    return tuple(found[i].name for i in np.abs(values[:, None] - known[None, :]).argmin(axis=1))
+    names = [found[i].name for i in np.abs(values[:, None] - known[None, :]).argmin(axis=1)]
+    return numbered(names, branches)
 
 
 def follow(models: Iterable[LinearModel]) -> Complex:

@@ -3,6 +3,7 @@ A sampled model's eigenvalues z become s = ln(z)/T, so that both kinds read alik
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from klingel.errors import InputError
 from klingel.linear.blocks import eigen, lives
 from klingel.linear.model import LinearModel
-from klingel.linear.names import Guess, guess
+from klingel.linear.names import Guess, guess, numbered
 from klingel.linear.shapes import Shape, Structure
 from klingel.linear.sweep import Sweep
 from klingel.lower import Spec, lower
@@ -34,12 +35,13 @@ OSCILLATES = 1e-6
 class Mode:
     """One mode of a linear model: x(t) = Re(shape e^(eigenvalue t)).
 
-    name: guessed from what moves; eigenvalue: [1/s], that of the pair with positive imaginary part; shape: over the
-    model's states, its largest motion real; bodies: body (or `<body>.<rotor>`, `<drive>.motor`) to its share of the
-    kinetic energy; elements: element to its share of the elastic energy; parts: kind of state (bodies, rotors, dampers,
-    actuators, drives, hold, controller) to its share in the eigenvalue (participation factors: the left vector times
-    the right one, summed over the kind). Energies are means over a cycle. Shares sum to one, those of `elements` by
-    their amounts as a wheelset's contacts may give energy; without energy there are none.
+    name: guessed from what moves, numbered where different modes would share it; eigenvalue: [1/s], that of the pair
+    with positive imaginary part; shape: over the model's states, its largest motion real; bodies: body (or
+    `<body>.<rotor>`, `<drive>.motor`) to its share of the kinetic energy; elements: element to its share of the elastic
+    energy; parts: kind of state (bodies, rotors, dampers, actuators, drives, hold, controller) to its share in the
+    eigenvalue (participation factors: the left vector times the right one, summed over the kind). Energies are means
+    over a cycle. Shares sum to one, those of `elements` by their amounts as a wheelset's contacts may give energy;
+    without energy there are none.
     """
 
     name: str
@@ -84,7 +86,8 @@ def modes(
     model: a linear model of the scenario or spec `of`, or a scenario, which is then linearised (`at`, `controllers` as
     for `klingel.linearise`); plant: the continuous model beside a sampled one, for the energy in the contacts.
     Of a conjugate pair the one with positive frequency is given. Left out are the free position along the track and
-    the bare memory of controllers (`klingel.linear.blocks.lives`). Errors: InputError as `klingel.linearise`.
+    the bare memory of controllers (`klingel.linear.blocks.lives`). Errors: InputError as `klingel.linearise`, and for
+    `of` being another vehicle.
     """
     if isinstance(model, Scenario):
         return _of_scenario(model, at, controllers)
@@ -94,8 +97,10 @@ def modes(
     structure = Structure(lower(of) if isinstance(of, Scenario) else of, model, plant)
     values, left, right = eigen(model)
     counted = np.flatnonzero(lives(values, model.sample_time) & (values.imag >= 0.0))
-    found = _modes(structure, values[counted], left[:, counted], right[:, counted])
-    return tuple(sorted(found, key=lambda m: (not m.oscillates, m.frequency if m.oscillates else -m.eigenvalue.real)))
+    found = list(_modes(structure, values[counted], left[:, counted], right[:, counted]))
+    found.sort(key=lambda m: (not m.oscillates, m.frequency if m.oscillates else -m.eigenvalue.real))
+    names = numbered([mode.name for mode in found], [mode.eigenvalue for mode in found])
+    return tuple(dataclasses.replace(mode, name=name) for mode, name in zip(found, names, strict=True))
 
 
 def _of_scenario(scenario: Scenario, at: Quantity | None, controllers: bool) -> tuple[Mode, ...]:

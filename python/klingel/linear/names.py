@@ -4,12 +4,12 @@ A guess from energies and phases, for people to read; nothing is computed from i
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from klingel.linear.shapes import Body, Shape, Structure
 
@@ -28,6 +28,9 @@ HOLDS = 0.2
 
 PHASE = 0.7
 """Cosine of the angle up to which two bodies swing in phase or in antiphase; nothing is said between."""
+
+SAME = 0.02
+"""Relative distance of eigenvalues up to which modes of one name are a group, as those of the two bogies are."""
 
 ALONE = 0.85
 """One of two bogies or wheelsets leads a mode with this share of their energy."""
@@ -246,6 +249,29 @@ def _spoken(name: str) -> str:
     words = {"bogie1": "front bogie", "bogie2": "rear bogie"}
     numbers = {"wheelset1": "its first wheelset", "wheelset2": "its second wheelset"}
     return ", ".join(words.get(part, numbers.get(part, part)) for part in name.split("."))
+
+
+def numbered(names: Sequence[str], eigenvalues: ArrayLike) -> tuple[str, ...]:
+    """Names with a number, by frequency, where different modes would share one; numbers that they had are forgotten.
+
+    Modes of one name and nearly one eigenvalue [1/s] are a group, and keep one name; eigenvalues (n), or (n, k) of
+    branches over a parameter, NaN where they are not, which are then to be near everywhere.
+
+    >>> numbered(["sway", "surge", "surge", "surge"], [-1 + 5j, -2 + 59j, -1 + 47j, -1 + 47.1j])
+    ('sway', 'surge #2', 'surge #1', 'surge #1')
+    """
+    bare = [name.partition(" #")[0] for name in names]
+    s = np.asarray(eigenvalues, dtype=np.complex128).reshape(len(bare), -1)
+    mean = np.nanmean(s, axis=1)
+    groups: dict[str, list[int]] = {}
+    places = dict.fromkeys(range(len(bare)), 0)
+    for k in sorted(places, key=lambda i: (abs(mean[i].imag), -mean[i].real)):
+        seen = groups.setdefault(bare[k], [])
+        same = (place for place, other in enumerate(seen) if not (abs(s[k] - s[other]) >= SAME * abs(s[k])).any())
+        places[k] = next(same, len(seen))
+        if places[k] == len(seen):
+            seen.append(k)
+    return tuple(f"{name} #{places[k] + 1}" if len(groups[name]) > 1 else name for k, name in enumerate(bare))
 
 
 def plain(element: str) -> str:

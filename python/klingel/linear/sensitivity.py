@@ -39,6 +39,9 @@ FLOOR = 1e-7
 GONE = 1e-3
 """Sampled eigenvalues below this size are memory of delays, gone within a few samples."""
 
+FELT = 20.0
+"""Oscillations below this frequency [Hz] are what people mean: above, wheels, shafts and motors ring."""
+
 HALVINGS = 6
 """At most so many; a derivative that still moves sits at a kink of a law or a table, and its error shows it."""
 
@@ -96,7 +99,7 @@ def eigenvalue_derivatives(
     """Eigenvalues [1/s] and their derivatives by a parameter, d lambda = w* dA v / w* v with left and right vectors.
 
     family: the model over the parameter's value, always with the same states; eigenvalues: those nearest to these, of
-    the model at `value` [1/s]; None for the least damped oscillation. Those of a sampled model are s = ln z/T.
+    the model at `value` [1/s]; None for the least damped oscillation below 20 Hz. Those of a sampled model are ln z/T.
     Errors: InputError for a repeated eigenvalue, which has no derivative, or a model whose states change.
     """
     model = family(value)
@@ -127,7 +130,7 @@ def _vectors(
         lasting = np.abs(z) > GONE
         z, W, V = z[lasting], W[:, lasting], V[:, lasting]
     s = z if model.sample_time is None else _continuous(z, model.sample_time)
-    wanted = [_least_damped(s, model.sample_time)] if eigenvalues is None else eigenvalues
+    wanted = [_least_damped(s)] if eigenvalues is None else eigenvalues
     places = np.array([int(np.argmin(np.abs(s - each))) for each in wanted], dtype=np.int64)
     W, V = W[:, places], V[:, places]
     overlap = np.sum(W.conj() * V, axis=0)
@@ -148,7 +151,8 @@ def eigenvalue_sensitivities(
     """How much each parameter moves eigenvalues, the strongest first for every eigenvalue.
 
     parameters: dotted paths (`klingel.linear.parameters.names`), None for all numbers that are not zero or whole;
-    eigenvalues: those nearest to these [1/s], None for the least damped oscillation; at, controllers: of `linearise`.
+    eigenvalues: those nearest to these [1/s], None for the least damped oscillation below 20 Hz (faster ones are of
+    wheels on rails, shafts and motors); at, controllers: of `linearise`.
     Returns rows (eigenvalue, parameter): `eigenvalue` [1/s], `frequency` [Hz], `damping` ratio, `parameter`, its
     `value` and `unit`, `effect` = p d eigenvalue/dp [1/s] (complex), `frequency_effect` = p df/dp [Hz],
     `damping_effect` = p d zeta/dp, and `error` of the effect, relative to it. Errors: InputError; SimulationError where
@@ -189,12 +193,12 @@ def _damping_effect(s: complex, ds: complex) -> float:
     return -ds.real / size + s.real * (s.real * ds.real + s.imag * ds.imag) / size**3
 
 
-def _least_damped(s: NDArray[np.complex128], sample_time: float | None) -> complex:
-    """The oscillation of least damping ratio; one that changes sign at every sample is none."""
-    highest = np.inf if sample_time is None else 0.999 * np.pi / sample_time
-    oscillations = s[(s.imag > 1e-6 * np.abs(s)) & (s.imag < highest)]
+def _least_damped(s: NDArray[np.complex128]) -> complex:
+    """The oscillation of least damping ratio below 20 Hz."""
+    oscillations = s[(s.imag > 1e-6 * np.abs(s)) & (s.imag < 2.0 * np.pi * FELT)]
     if len(oscillations) == 0:
-        raise InputError.single("eigenvalues", None, "none of them oscillates", remedy="give the ones you mean")
+        message = f"none of them oscillates below {FELT:g} Hz"
+        raise InputError.single("eigenvalues", None, message, remedy="give the ones you mean")
     return complex(oscillations[np.argmax(oscillations.real / np.abs(oscillations))])
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from klingel.errors import InputError
 from klingel.linear.kinematics import Placement, UniformTrack, joint_jacobian
 from klingel.linear.model import LinearModel
 from klingel.lower import Spec
@@ -62,7 +63,8 @@ class Structure:
     """A spec on the states of its linear model.
 
     spec: of the vehicle, such as `lower(scenario)`; model: its states and operating point; plant: the continuous model
-    of the same states where `model` is sampled, for the stiffness of the contacts (none without it).
+    of the same states where `model` is sampled, for the stiffness of the contacts (none without it). Errors: InputError
+    for a spec of another vehicle.
     """
 
     def __init__(self, spec: Spec, model: LinearModel, plant: LinearModel | None = None) -> None:
@@ -70,6 +72,24 @@ class Structure:
         self.model = model
         self.plant = plant if plant is not None else model if model.sample_time is None else None
         self.places: Mapping[str, int] = {state.name: i for i, state in enumerate(model.states)}
+        self._check()
+
+    def _check(self) -> None:
+        """Refuses a spec that is not what the model was made of."""
+        own = [f"{body['name']}.y" for body in self.spec["bodies"]]
+        own += [f"{b['name']}.{r['name']}.spin_speed" for b in self.spec["bodies"] for r in b.get("rotors", ())]
+        own += [f"{maxwell['name']}.force" for maxwell in self.spec.get("maxwells", ())]
+        own += [f"{actuator['name']}.force_rate" for actuator in self.spec.get("actuators", ())]
+        own += [f"{drive['name']}.motor_speed" for drive in self.spec.get("drives", ())]
+        lacking = [name for name in own if name not in self.places]
+        moving = {name.rpartition(".")[0] for name in self.places if name.endswith(".vy")}
+        foreign = sorted(moving - {body["name"] for body in self.spec["bodies"]})
+        if lacking or foreign:
+            what = f"the model has no state {lacking[0]}" if lacking else f"it has no body {foreign[0]}"
+            remedy = f"give the scenario that {self.model.name} was linearised of"
+            raise InputError.single(
+                "of", self.spec["name"], f"is not what the model was made of: {what}", remedy=remedy
+            )
 
     @cached_property
     def bodies(self) -> tuple[Body, ...]:

@@ -98,7 +98,7 @@ def run(
     Raises:
         InputError: the folder cannot be made, or an unknown radius or vehicle.
         SimulationError: some runs failed; the message names them, the rest is written.
-        KeyboardInterrupt: after Ctrl-C, once the finished runs are written.
+        KeyboardInterrupt: after Ctrl-C, once the finished runs are written, saying how many and where.
     """
     started = time.perf_counter()
     console = console or _console()
@@ -121,7 +121,7 @@ def run(
     batch = run_all(list(runs), work, result.progress, jobs=jobs, console=console)
     study = _written(folder, runs, batch, started, console)
     if batch.interrupted:
-        raise KeyboardInterrupt
+        raise KeyboardInterrupt(f"{len(batch.done)} of {len(runs)} runs are kept in {folder}")
     if batch.failed:
         listed = "\n".join(f"  {name}: {reason}" for name, reason in batch.failed.items())
         raise SimulationError(f"{len(batch.failed)} of {len(runs)} runs failed, the rest is in {folder}\n{listed}")
