@@ -149,7 +149,7 @@ def _time_of_change(radius: float, low: float, high: float) -> float:
 def _patches(strategy: str) -> Iterable[TractionRun]:
     """A patch of 200 m with friction 0.08, under full traction, full braking and at speed in two curves."""
     begin = 250.0
-    adhesion = Adhesion(base=FRICTION, patches=[(begin, begin + PATCH, LOW)], ramp=RAMP)
+    adhesion = Adhesion(base=FRICTION, patches=[(begin, begin + PATCH, LOW)], transition=RAMP)
     track = Track.straight("900 m")
     for word, speed, notch in (("accelerating", 50.0 / 3.6, 1.0), ("braking", 120.0 / 3.6, -1.0)):
         duration = 22.0 if notch > 0.0 else 20.0
@@ -159,7 +159,7 @@ def _patches(strategy: str) -> Iterable[TractionRun]:
         yield TractionRun("patch", name, f"{word} over the patch", strategy, scenario, (begin, begin + PATCH))
     for radius, (_, high, transition) in CURVES.items():
         first = 150.0 + float(transition.split()[0]) + 100.0
-        where = Adhesion(base=FRICTION, patches=[(first, first + PATCH, LOW)], ramp=RAMP)
+        where = Adhesion(base=FRICTION, patches=[(first, first + PATCH, LOW)], transition=RAMP)
         curve = Track.curve(radius=radius, cant="160 mm", transition=transition, arc="700 m")
         v = high / 3.6
         traction = Traction((0.0, (first + PATCH + 400.0) / v), speed=(v, v), slip=SlipControl())
