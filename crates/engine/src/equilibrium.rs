@@ -1,7 +1,7 @@
 //! The start of a run: the design position, and every body at rest relative to the others while the vehicle rolls.
 
 use crate::error::EngineError;
-use crate::model::Model;
+use crate::model::{FieldIn, Model};
 use crate::steady::steady;
 
 /// The states in the design position at the initial speed, wheels rolling.
@@ -24,7 +24,18 @@ pub fn design_state(m: &Model) -> Vec<f64> {
         x[m.rotors[wheel.rotor].state] = m.speed / wheel.radius;
     }
     for drive in &m.drives {
-        x[drive.state + 1] = x[m.rotors[drive.rotor].state] / drive.law.gear_ratio;
+        x[drive.state] = x[m.rotors[drive.rotor].state] / drive.law.gear_ratio;
+    }
+    for motor in &m.dc_motors {
+        if let FieldIn::Moved { law, state, input, .. } = &motor.field {
+            x[*state] = m.inputs[*input] / law.resistance;
+        }
+    }
+    for motor in &m.induction_motors {
+        let drive = &m.drives[motor.drive];
+        let torque = drive.law.gear_ratio * m.inputs[motor.input];
+        let (state, control) = motor.control.steady_state(torque, x[drive.state]);
+        motor.write(&state, &control, &mut x);
     }
     x
 }
@@ -73,7 +84,7 @@ fn roll_where_they_touch(m: &Model, sink: f64, x: &mut [f64]) {
             let radius = patches.iter().map(|p| p.normal_force * p.radius).sum::<f64>() / load;
             x[m.rotors[wheel.rotor].state] = m.speed / radius;
             for drive in m.drives.iter().filter(|d| d.rotor == wheel.rotor) {
-                x[drive.state + 1] = m.speed / radius / drive.law.gear_ratio;
+                x[drive.state] = m.speed / radius / drive.law.gear_ratio;
             }
         }
     }
