@@ -1,7 +1,7 @@
 """Control strategies of mechatronic vehicles: small frozen objects that lower to the core's block diagrams.
 S and I of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 207-217, and no control at all."""
 
-from klingel.control.common import Timing
+from klingel.control.basics import Timing
 from klingel.control.feedforward import ContactDesign
 from klingel.control.irw_like import IRWLike
 from klingel.control.passive import Passive

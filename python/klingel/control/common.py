@@ -4,12 +4,10 @@ Wheelsets are named as in the results: bogie1.wheelset1 leads, bogie2.wheelset2 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from klingel.control.basics import SPEED, SPEED_GRID, Timing, Wheelset, scheduled
 from klingel.control.diagram import Diagram
 from klingel.control.discrete import Section, low_pass, slope_low_pass
 from klingel.control.feedforward import ContactDesign, SteeringGeometry, attack_angle_table
@@ -18,45 +16,10 @@ from klingel.track import CANT_BASE
 
 if TYPE_CHECKING:
     from klingel.track import Track
-    from klingel.vehicle import Drive, SteeringActuator, Vehicle
+    from klingel.vehicle import SteeringActuator, Vehicle
 
-SPEED = "body.speed"
 BUTTERWORTH = 0.7
 """Damping ratio of all second-order low-passes here."""
-SPEED_GRID = tuple(float(v) for v in np.geomspace(5.0, 100.0, 25))
-"""Speeds [m/s] of the gain schedules; below and above, the gain of the last one."""
-
-
-@dataclass(frozen=True)
-class Timing:
-    """sample_time [s]; delays in samples: sensors of the signals fed back, computation of the commands."""
-
-    sample_time: float = 1e-3
-    sensor_samples: int = 1
-    computation_samples: int = 1
-
-
-@dataclass(frozen=True)
-class Wheelset:
-    """Place of a wheelset; `lead` is +1 for the leading one of its bogie, -1 for the trailing one."""
-
-    bogie: int
-    number: int
-
-    @property
-    def lead(self) -> float:
-        return 1.0 if self.number == 1 else -1.0
-
-    @property
-    def bogie_name(self) -> str:
-        return f"bogie{self.bogie}"
-
-    @property
-    def name(self) -> str:
-        return f"bogie{self.bogie}.wheelset{self.number}"
-
-
-WHEELSETS = tuple(Wheelset(bogie, number) for bogie in (1, 2) for number in (1, 2))
 
 
 @dataclass(frozen=True)
@@ -64,7 +27,6 @@ class Plant:
     """The numbers of one vehicle that a strategy is made from."""
 
     geometry: SteeringGeometry
-    drive: Drive
     steering: SteeringActuator
     radius: float
 
@@ -75,19 +37,14 @@ class Plant:
             if getattr(vehicle, key) is None:
                 remedy = f"{vehicle.name} is passive; take a vehicle with [drive] and [steering], or no control"
                 raise InputError.single(key, None, "is missing", remedy=remedy)
-        assert vehicle.drive is not None
         assert vehicle.steering is not None
-        return cls(SteeringGeometry.of(vehicle), vehicle.drive, vehicle.steering, vehicle.geometry.wheel_radius)
+        radius = vehicle.geometry.wheel_radius
+        return cls(SteeringGeometry.of(vehicle), vehicle.steering, radius)
 
     @property
     def speed_ratio(self) -> float:
         """wd over the yaw rate of the track: lambda/r0 [-]; half of Eq. (1) is lambda V rho/r0."""
         return self.geometry.half_tape_distance / self.radius
-
-    @property
-    def steering_voltage_max(self) -> float:
-        """(1 - x) VaMax [V]: what traction leaves for |u| of Eqs (22) and (23)."""
-        return (1.0 - self.drive.traction_share) * self.drive.armature_voltage_max
 
     @property
     def moment_max(self) -> float:
@@ -98,11 +55,6 @@ class Plant:
     def actuator_lag(self) -> float:
         """Delay of the actuators for slow commands, 2 zeta/w [s]."""
         return 2.0 * self.steering.damping_ratio / (2.0 * math.pi * self.steering.bandwidth)
-
-
-def scheduled(d: Diagram, name: str, gain: Callable[[float], float]) -> str:
-    """The signal of a gain scheduled over the measured speed."""
-    return d.lookup(name, d.measure(SPEED), SPEED_GRID, [gain(v) for v in SPEED_GRID])
 
 
 def speed_difference(d: Diagram, wheelset: Wheelset, timing: Timing) -> str:
@@ -248,14 +200,3 @@ def command_steering(d: Diagram, plant: Plant, w: Wheelset, moment: str, timing:
         force = d.sum(f"{w.name}.F.{side}", {sent: sign / (2.0 * plant.steering.half_spacing)})
         d.command(f"{w.name}.actuator_{side}.force", force)
     d.probe(f"{w.name}.steering_moment_command", "N m", sent)
-
-
-def check_positive(owner: object, names: Sequence[str], *, key: str = "control") -> None:
-    """Errors: InputError naming the parameter of a strategy that is no number or not above zero."""
-    for name in names:
-        value = getattr(owner, name)
-        if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
-            remedy = "give a plain number in SI; only scenario files take strings with units here"
-            raise InputError.single(f"{key}.{name}", value, "is no number", remedy=remedy)
-        if not value > 0.0:
-            raise InputError.single(f"{key}.{name}", value, "must be positive", remedy="give a value above zero")

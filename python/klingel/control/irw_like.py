@@ -7,18 +7,13 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
+from klingel.control.basics import SPEED, WHEELSETS, Timing, Wheelset, check_positive, scheduled
 from klingel.control.common import (
-    SPEED,
-    WHEELSETS,
     Plant,
-    Timing,
-    Wheelset,
-    check_positive,
     command_steering,
     database_curvature,
     database_curve,
     gyroscopic_moment,
-    scheduled,
     sense_curve,
     sense_inertia,
     sensed_curve,
@@ -28,8 +23,9 @@ from klingel.control.common import (
 )
 from klingel.control.diagram import Diagram
 from klingel.control.discrete import low_pass
+from klingel.control.driven import motors_of
 from klingel.control.feedforward import ContactDesign
-from klingel.control.motors import Motors
+from klingel.control.motors import Motors, command_motors
 from klingel.control.traction import Traction
 from klingel.errors import InputError, nearest
 
@@ -53,8 +49,8 @@ class IRWLike:
     integral_time: Ti of the steering loop [s], ten times the loop's own time so that it costs little phase.
     integral_reach: displacement up to which the integral acts [m]. Beyond it, near the flange, adhesion cannot carry
         the lateral force, and an integral would only grow.
-    current_frequency: crossover of the differential current loop [Hz]: above all motion of the wheelset, below what a
-        delay of two samples bears.
+    current_frequency: crossover of the differential current loop of DC motors [Hz]: above all motion of the wheelset,
+        below what a delay of two samples bears.
     yaw_frequency: low-pass of the wheelset's yaw rate [Hz]. Above it lambda psi'/r0 stays in the speed difference, as
         it does with a database, and damps the yaw of the wheelset on its primary springs near 6 Hz.
     gyro_frequency: low-pass of the bogie's yaw rate [Hz] that the radial part of the feedforward is made of; low, so
@@ -101,14 +97,13 @@ class IRWLike:
         Errors: InputError for a vehicle without drives or steering actuators.
         """
         plant = Plant.of(vehicle)
-        motors = Motors.of(vehicle, plant, self.timing, self.traction, speed)
+        motors = motors_of(vehicle, self.traction, self.timing, speed)
         d = Diagram(sample_time=self.timing.sample_time)
-        motors.prepare(d)
         proportional = scheduled(d, "steering.gain", lambda v: self._steering_gain(plant, v))
         integral = d.sum("steering.integral_gain", {proportional: 1.0 / self.integral_time})
         sense_inertia(d, plant, self.timing, frequency=self.sensor_frequency)
         for wheelset in WHEELSETS:
-            self._torque_loop(d, plant, motors, wheelset)
+            self._torque_loop(d, motors, wheelset)
             self._speed_error(d, plant, wheelset, track)
         if self.curvature == "gyro":
             sense_curve(d, plant, self.contact, self.timing, frequency=self.gyro_frequency)
@@ -121,20 +116,9 @@ class IRWLike:
         stiffness = plant.geometry.yaw_stiffness * plant.radius**2 / self.contact.conicity
         return 2.0 * math.pi * self.frequency * stiffness / speed**2
 
-    def _torque_loop(self, d: Diagram, plant: Plant, motors: Motors, w: Wheelset) -> None:
-        """u = K(s) (0 - (IaL - IaR)/2): equal armature currents are equal torques; K cancels the armature's pole."""
-        left, right = (d.measure(f"{w.name}.{side}.armature_current") for side in ("left", "right"))
-        now = d.sum(f"{w.name}.Id.now", {left: -0.5, right: 0.5})
-        error = d.delay(f"{w.name}.Id.error", now, self.timing.sensor_samples)
-        crossover = 2.0 * math.pi * self.current_frequency
-        voltage = d.pi(
-            f"{w.name}.u",
-            error,
-            proportional=crossover * plant.drive.armature_inductance,
-            integral=crossover * plant.drive.armature_resistance,
-            limit=plant.steering_voltage_max,
-        )
-        motors.command(d, w, voltage)
+    def _torque_loop(self, d: Diagram, motors: Motors, w: Wheelset) -> None:
+        """Equal torques for both wheels."""
+        command_motors(d, motors, w.name, motors.equal_torques(d, w.name, frequency=self.current_frequency))
 
     def _speed_error(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
         """lambda r/r0 - wd [rad/s], r the yaw rate of the wheelset or of the track: -V gamma y/r0^2."""
@@ -158,8 +142,7 @@ class IRWLike:
         else:
             rho, roll_rate = database_curve(d, plant, w, track, self.timing)
         error, limit = f"{w.name}.wd.error", 0.5 * plant.moment_max
-        reach = self._integral_share(d, plant, w)
-        held = d.product(f"{w.name}.steering.integral_gain", integral, reach)
+        held = d.product(f"{w.name}.steering.integral_gain", integral, self._integral_share(d, plant, w))
         feedback = d.pi(f"{w.name}.M.feedback", error, proportional=proportional, integral=held, limit=limit)
         gyroscopic = gyroscopic_moment(d, plant, w, roll_rate)
         feedforward = steering_feedforward(
@@ -168,10 +151,7 @@ class IRWLike:
         command_steering(d, plant, w, d.sum(f"{w.name}.M", {feedforward: 1.0, feedback: 1.0}), self.timing)
 
     def _integral_share(self, d: Diagram, plant: Plant, w: Wheelset) -> str:
-        """1 while the displacement that the error tells, e r0^2/(V gamma), is one to be removed; 0 near the flange.
-
-        There adhesion does not carry the lateral force, and an integral would only grow until it can.
-        """
+        """1 while the displacement that the error tells, e r0^2/(V gamma), is one to be removed; 0 near the flange."""
         per_error = scheduled(d, f"{w.name}.y.gain", lambda v: -(plant.radius**2) / (self.contact.conicity * v))
         y = d.product(f"{w.name}.y.told", f"{w.name}.wd.error", per_error)
         full, out = self.integral_reach, self.integral_reach + REACH_ROUNDED

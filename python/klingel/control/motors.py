@@ -1,147 +1,171 @@
-"""The motors as a strategy commands them: a mean torque of every pair of wheels, and a difference for steering.
-Without a traction loop the field and the mean voltage are those of the operating point, as in Perez et al. (2004)."""
+"""How a strategy drives a pair of motors, whatever their kind: the same torque is a voltage here and a command there.
+Here they are held at their operating point, as in Perez et al. (2004); `driven` has them under a traction loop."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
-from klingel.control.common import Plant, Timing, Wheelset, scheduled
-from klingel.control.diagram import Diagram
-from klingel.control.traction import DEMAND, Traction
-from klingel.drives import OperatingPoint, operating_point
+from klingel.control.basics import Timing, scheduled
+from klingel.control.diagram import Diagram, Gain
+from klingel.drives import (
+    InductionPoint,
+    OperatingPoint,
+    induction_torque_max,
+)
 
 if TYPE_CHECKING:
-    from klingel.vehicle import Vehicle
+    from klingel.vehicle import Drive, InductionDrive
 
-FIELD_MIN = 0.1
-"""Least field current over its rated value: far above the speeds of the vehicle."""
+
+class Motors(Protocol):
+    """What a strategy asks of the motors of a wheelset; u is the half difference of what the two are commanded."""
+
+    @property
+    def timing(self) -> Timing:
+        """Sampling and delays."""
+        ...
+
+    @property
+    def input(self) -> str:
+        """The input of each motor: `armature_voltage` [V] or `torque_command` [N m]."""
+        ...
+
+    @property
+    def probe(self) -> tuple[str, str]:
+        """Name and unit under which u is recorded."""
+        ...
+
+    @property
+    def steering_max(self) -> float:
+        """What traction leaves for |u|."""
+        ...
+
+    @property
+    def lag(self) -> float:
+        """Time constant from u to torque that a controller makes up for [s]; 0 for none."""
+        ...
+
+    def mean(self, d: Diagram, w: str) -> str | float:
+        """What both motors of a wheelset get for traction."""
+        ...
+
+    def gain(self, d: Diagram, w: str, damping: Callable[[float], float]) -> str:
+        """u over a half difference of speeds for a damping [N m s/rad] of the wheels over the running speed [m/s]."""
+        ...
+
+    def per_speed(self, d: Diagram, w: str, ratio: float) -> Gain:
+        """u that a half difference of the wheel speeds needs to make no torque, times `ratio` [1/(rad/s)]."""
+        ...
+
+    def equal_torques(self, d: Diagram, w: str, *, frequency: float) -> str:
+        """u that keeps the torques of a pair equal; frequency: of a loop that it may take [Hz]."""
+        ...
+
+
+def command_motors(d: Diagram, motors: Motors, w: str, u: str) -> None:
+    """Left mean + u and right mean - u, Eqs (22) and (23) for voltages, with |u| within what traction leaves."""
+    limited = d.saturation(f"{w}.u.limited", u, -motors.steering_max, motors.steering_max)
+    sent = d.delay(f"{w}.u.sent", limited, motors.timing.computation_samples)
+    mean = motors.mean(d, w)
+    bias = 0.0 if isinstance(mean, str) else mean
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        name = f"{w}.{motors.input}.{side}"
+        total = d.sum(name, {sent: sign} | ({mean: 1.0} if isinstance(mean, str) else {}), bias=bias)
+        d.command(f"{w}.{side}.{motors.input}", total)
+    name, unit = motors.probe
+    d.probe(f"{w}.{name}", unit, sent)
+
+
+def equal_currents(d: Diagram, drive: Drive, w: str, *, timing: Timing, frequency: float, limit: float) -> str:
+    """u = K(s) (0 - (IaL - IaR)/2) [V]: equal armature currents are equal torques; K cancels the armature's pole."""
+    left, right = (d.measure(f"{w}.{side}.armature_current") for side in ("left", "right"))
+    now = d.sum(f"{w}.Id.now", {left: -0.5, right: 0.5})
+    error = d.delay(f"{w}.Id.error", now, timing.sensor_samples)
+    crossover = 2.0 * math.pi * frequency
+    return d.pi(
+        f"{w}.u",
+        error,
+        proportional=crossover * drive.armature_inductance,
+        integral=crossover * drive.armature_resistance,
+        limit=limit,
+    )
+
+
+def steering_voltage_max(drive: Drive) -> float:
+    """(1 - x) VaMax [V]: what traction leaves for |u| of Eqs (22) and (23)."""
+    return (1.0 - drive.traction_share) * drive.armature_voltage_max
 
 
 @dataclass(frozen=True)
-class Motors:
-    """The motors of a vehicle under a strategy; `traction` None holds field and mean voltage at `point`."""
+class DcMotors:
+    """DC motors at their operating point: VaL = Va + u and VaR = Va - u, Eqs (22) and (23), Va that of the point."""
 
-    vehicle: Vehicle
-    plant: Plant
+    drive: Drive
+    point: OperatingPoint
     timing: Timing
-    traction: Traction | None
-    point: OperatingPoint | None
-
-    @classmethod
-    def of(cls, vehicle: Vehicle, plant: Plant, timing: Timing, traction: Traction | None, speed: float) -> Motors:
-        """Errors: InputError for a speed [m/s] at which the motors have no operating point to be held at."""
-        point = operating_point(vehicle, speed) if traction is None else None
-        return cls(vehicle, plant, timing, traction, point)
-
-    def prepare(self, d: Diagram) -> None:
-        """What all wheelsets share."""
-        if self.traction is not None:
-            demand = self.traction.demand(d, self.vehicle)
-            d.probe("traction.torque_asked", "N m", demand)
-
-    def gain(self, d: Diagram, w: Wheelset, damping: Callable[[float], float]) -> str:
-        """Volts per rad/s that make a damping torque [N m s/rad] over the speed, through KT/(N Ra)."""
-        drive = self.plant.drive
-        if self.point is not None:
-            kt = self.point.torque_constant
-            name = "speed_loop.gain"
-            if d.has(name):
-                return name
-            return scheduled(d, name, lambda v: damping(v) * drive.gear_ratio * drive.armature_resistance / kt)
-        name = "speed_loop.damping"
-        wanted = name if d.has(name) else scheduled(d, name, damping)
-        volts = d.sum(f"{w.name}.speed_loop.volts", {wanted: drive.gear_ratio * drive.armature_resistance})
-        return d.quotient(f"{w.name}.speed_loop.gain", volts, self._torque_constant(d, w), floor=self._least_constant)
-
-    def back_emf(self, d: Diagram, w: Wheelset, turn: str) -> tuple[str, float]:
-        """Signal and gain of the voltage that the commanded half difference of the wheels' speeds takes."""
-        per_turn = self.plant.speed_ratio / self.plant.drive.gear_ratio
-        if self.point is not None:
-            return turn, self.point.torque_constant / self.plant.drive.gear_ratio * self.plant.speed_ratio
-        return d.product(f"{w.name}.u.emf", turn, self._torque_constant(d, w)), per_turn
-
-    def command(self, d: Diagram, w: Wheelset, voltage: str) -> None:
-        """VaL = Va + u and VaR = Va - u, Eqs (22) and (23), with |u| at most (1 - x) VaMax; fields where they move."""
-        limit = self.plant.steering_voltage_max
-        limited = d.saturation(f"{w.name}.u.limited", voltage, -limit, limit)
-        sent = d.delay(f"{w.name}.u.sent", limited, self.timing.computation_samples)
-        mean = None if self.traction is None else self._mean_voltage(d, w, self.traction)
-        for side, sign in (("left", 1.0), ("right", -1.0)):
-            if self.point is not None:
-                total = d.sum(f"{w.name}.Va.{side}", {sent: sign}, bias=self.point.armature_voltage)
-            else:
-                assert mean is not None
-                total = d.sum(f"{w.name}.Va.{side}", {sent: sign, mean: 1.0})
-            d.command(f"{w.name}.{side}.armature_voltage", total)
-        d.probe(f"{w.name}.steering_voltage", "V", sent)
-
-    def _mean(self, d: Diagram, w: Wheelset, quantity: str) -> str:
-        name = f"{w.name}.{quantity}.mean"
-        if not d.has(name):
-            sides = {d.measure(f"{w.name}.{side}.{quantity}"): 0.5 for side in ("left", "right")}
-            now = d.sum(f"{name}.now", dict(sides))
-            return d.delay(name, now, self.timing.sensor_samples)
-        return name
-
-    def _torque_constant(self, d: Diagram, w: Wheelset) -> str:
-        """KT = Ke If of the measured field [N m/A]."""
-        name = f"{w.name}.KT"
-        return name if d.has(name) else d.sum(name, {self._mean(d, w, "field_current"): self.plant.drive.emf_constant})
+    input: str = "armature_voltage"
+    probe: tuple[str, str] = ("steering_voltage", "V")
 
     @property
-    def _least_constant(self) -> float:
-        return FIELD_MIN * self.plant.drive.field_current_rated * self.plant.drive.emf_constant
+    def steering_max(self) -> float:
+        """(1 - x) VaMax [V]"""
+        return steering_voltage_max(self.drive)
 
-    def _mean_voltage(self, d: Diagram, w: Wheelset, traction: Traction) -> str:
-        """Va = EMF + Ra Ia* + PI(Ia* - Ia) within +-x VaMax, Ia* = (N T + CM wM)/KT; and the field for it."""
-        drive = self.plant.drive
-        slip = traction.slip
-        torque = DEMAND if slip is None else slip.limited(d, self.vehicle, w, DEMAND, self.timing)
-        d.probe(f"{w.name}.torque_asked", "N m", torque)
-        kt, turning = self._torque_constant(d, w), self._mean(d, w, "motor_speed")
-        air_gap = d.sum(f"{w.name}.TM", {torque: drive.gear_ratio, turning: drive.rotor_damping})
-        wanted = d.quotient(f"{w.name}.Ia.asked", air_gap, kt, floor=self._least_constant)
-        rated = drive.armature_current_rated
-        current = d.saturation(f"{w.name}.Ia.wanted", wanted, -rated, rated)
-        share = drive.traction_share * drive.armature_voltage_max
-        emf = d.product(f"{w.name}.EMF", kt, turning)
-        forward = d.sum(f"{w.name}.Va.forward", {emf: 1.0, current: drive.armature_resistance})
-        error = d.sum(f"{w.name}.Ia.error", {current: 1.0, self._mean(d, w, "armature_current"): -1.0})
-        lower = d.sum(f"{w.name}.Va.lower", {forward: -1.0}, bias=-share)
-        upper = d.sum(f"{w.name}.Va.upper", {forward: -1.0}, bias=share)
-        crossover = 2.0 * math.pi * traction.current_frequency
-        back = d.pi(
-            f"{w.name}.Va.feedback",
-            error,
-            proportional=crossover * drive.armature_inductance,
-            integral=crossover * drive.armature_resistance,
-            within=(lower, upper),
-        )
-        self._excite(d, w, traction, current, turning)
-        mean = d.sum(f"{w.name}.Va.mean", {forward: 1.0, back: 1.0})
-        sent = d.delay(f"{w.name}.Va.sent", mean, self.timing.computation_samples)
-        d.probe(f"{w.name}.traction_voltage", "V", sent)
-        return sent
+    @property
+    def lag(self) -> float:
+        """Of the armature, La/Ra [s]"""
+        return self.drive.armature_inductance / self.drive.armature_resistance
 
-    def _excite(self, d: Diagram, w: Wheelset, traction: Traction, current: str, turning: str) -> None:
-        """Vf = Rf If* + 2 pi f Lf (If* - If); If* leaves the back-EMF what the armature's drop takes of x VaMax."""
-        drive = self.plant.drive
-        share = drive.traction_share * drive.armature_voltage_max
-        driving = d.saturation(f"{w.name}.Ia.driving", current, 0.0, drive.armature_current_rated)
-        room = d.sum(f"{w.name}.EMF.most", {driving: -drive.armature_resistance}, bias=traction.field_margin * share)
-        flux = d.sum(f"{w.name}.flux.speed", {turning: drive.emf_constant})
-        weakened = d.quotient(f"{w.name}.If.weakened", room, flux, floor=drive.emf_constant)
-        rated = drive.field_current_rated
-        wanted = d.saturation(f"{w.name}.If.wanted", weakened, FIELD_MIN * rated, rated)
-        gain = 2.0 * math.pi * traction.field_frequency * drive.field_inductance
-        terms: dict[str, float | str] = {
-            wanted: drive.field_resistance + gain,
-            self._mean(d, w, "field_current"): -gain,
-        }
-        voltage = d.sum(f"{w.name}.Vf", terms)
-        sent = d.delay(f"{w.name}.Vf.sent", voltage, self.timing.computation_samples)
-        for side in ("left", "right"):
-            d.command(f"{w.name}.{side}.field_voltage", sent)
+    def mean(self, d: Diagram, w: str) -> float:
+        """Va [V]"""
+        return self.point.armature_voltage
+
+    def gain(self, d: Diagram, w: str, damping: Callable[[float], float]) -> str:
+        """Through KT/(N Ra) [V s/rad]"""
+        drive, kt = self.drive, self.point.torque_constant
+        return scheduled(d, "speed_loop.gain", lambda v: damping(v) * drive.gear_ratio * drive.armature_resistance / kt)
+
+    def per_speed(self, d: Diagram, w: str, ratio: float) -> float:
+        """The back-EMF, KT/N [V/(rad/s)]"""
+        return self.point.torque_constant / self.drive.gear_ratio * ratio
+
+    def equal_torques(self, d: Diagram, w: str, *, frequency: float) -> str:
+        """By equal armature currents [V]"""
+        return equal_currents(d, self.drive, w, timing=self.timing, frequency=frequency, limit=self.steering_max)
+
+
+@dataclass(frozen=True)
+class InductionMotors:
+    """Induction motors at their operating point; they make the torque that they are commanded."""
+
+    drive: InductionDrive
+    point: InductionPoint
+    timing: Timing
+    input: str = "torque_command"
+    probe: tuple[str, str] = ("steering_torque", "N m")
+    lag: float = 0.0
+
+    @property
+    def steering_max(self) -> float:
+        """What current and voltage give beyond the mean [N m]."""
+        limit = induction_torque_max(self.drive, self.point.motor_speed) / self.drive.gear_ratio
+        return limit - abs(self.point.torque_command)
+
+    def mean(self, d: Diagram, w: str) -> float:
+        """Of the running resistance and the rotor's friction [N m]"""
+        return self.point.torque_command
+
+    def gain(self, d: Diagram, w: str, damping: Callable[[float], float]) -> str:
+        """The damping itself [N m s/rad]"""
+        return scheduled(d, "speed_loop.gain", damping)
+
+    def per_speed(self, d: Diagram, w: str, ratio: float) -> float:
+        """None: the drive makes up for its back-EMF itself."""
+        return 0.0
+
+    def equal_torques(self, d: Diagram, w: str, *, frequency: float) -> str:
+        """No difference: the drives' own loops keep the torques [N m]."""
+        return d.sum(f"{w}.u", {})

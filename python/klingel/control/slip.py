@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from klingel.control.common import SPEED, Timing, Wheelset, check_positive
+from klingel.control.basics import SPEED, Timing, check_positive
 from klingel.control.diagram import BEYOND, Diagram
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ class SlipControl:
     def __post_init__(self) -> None:
         check_positive(self, ("creepage", "slip_speed", "frequency", "integral_time"), key="control.traction.slip")
 
-    def limited(self, d: Diagram, vehicle: Vehicle, w: Wheelset, asked: str, timing: Timing) -> str:
+    def limited(self, d: Diagram, vehicle: Vehicle, w: str, asked: str, timing: Timing) -> str:
         """The torque of each wheel of a pair [N m], out of the torque asked."""
         drive, bridge = vehicle.drive, vehicle.axle_bridge
         assert drive is not None
@@ -49,27 +49,27 @@ class SlipControl:
         speed = d.measure(SPEED)
         # at walking pace a creepage says nothing: a slip speed takes its place
         allowed = d.lookup(
-            f"{w.name}.slip.most", speed, (0.0, self.slip_speed / self.creepage, 100.0),
+            f"{w}.slip.most", speed, (0.0, self.slip_speed / self.creepage, 100.0),
             (self.slip_speed, self.slip_speed, 100.0 * self.creepage),
         )  # fmt: skip
         slips = []
         for side in ("left", "right"):
-            wheel = d.measure(f"{w.name}.{side}.spin_speed")
-            now = d.sum(f"{w.name}.slip.{side}.now", {wheel: radius, speed: -1.0})
-            slips.append(d.delay(f"{w.name}.slip.{side}", now, timing.sensor_samples))
-        spinning = d.larger(f"{w.name}.slip.spinning", *slips)
-        sliding = d.smaller(f"{w.name}.slip.sliding", *slips)
+            wheel = d.measure(f"{w}.{side}.spin_speed")
+            now = d.sum(f"{w}.slip.{side}.now", {wheel: radius, speed: -1.0})
+            slips.append(d.delay(f"{w}.slip.{side}", now, timing.sensor_samples))
+        spinning = d.larger(f"{w}.slip.spinning", *slips)
+        sliding = d.smaller(f"{w}.slip.sliding", *slips)
         parts = []
         for name, slip, sign in (("spinning", spinning, 1.0), ("sliding", sliding, -1.0)):
-            error = d.sum(f"{w.name}.slip.{name}.error", {allowed: sign, slip: -1.0})
+            error = d.sum(f"{w}.slip.{name}.error", {allowed: sign, slip: -1.0})
             range_: tuple[float | str, float | str]
             if sign > 0.0:
-                range_ = (0.0, d.saturation(f"{w.name}.T.{name}.asked", asked, 0.0, BEYOND))
+                range_ = (0.0, d.saturation(f"{w}.T.{name}.asked", asked, 0.0, BEYOND))
             else:
-                range_ = (d.saturation(f"{w.name}.T.{name}.asked", asked, -BEYOND, 0.0), 0.0)
+                range_ = (d.saturation(f"{w}.T.{name}.asked", asked, -BEYOND, 0.0), 0.0)
             parts.append(
-                d.pi(f"{w.name}.T.{name}", error, proportional=gain, integral=gain / self.integral_time, within=range_)
+                d.pi(f"{w}.T.{name}", error, proportional=gain, integral=gain / self.integral_time, within=range_)
             )
-        torque = d.sum(f"{w.name}.T", {parts[0]: 1.0, parts[1]: 1.0})
-        d.probe(f"{w.name}.slip_speed_limit", "m/s", allowed)
+        torque = d.sum(f"{w}.T", {parts[0]: 1.0, parts[1]: 1.0})
+        d.probe(f"{w}.slip_speed_limit", "m/s", allowed)
         return torque

@@ -7,13 +7,9 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from klingel.control.basics import SPEED, WHEELSETS, Timing, Wheelset, check_positive
 from klingel.control.common import (
-    SPEED,
-    WHEELSETS,
     Plant,
-    Timing,
-    Wheelset,
-    check_positive,
     command_steering,
     database_curvature,
     database_curve,
@@ -24,8 +20,9 @@ from klingel.control.common import (
 )
 from klingel.control.diagram import Diagram
 from klingel.control.discrete import lead, notch
+from klingel.control.driven import motors_of
 from klingel.control.feedforward import ContactDesign
-from klingel.control.motors import Motors
+from klingel.control.motors import Motors, command_motors
 from klingel.control.traction import Traction
 
 if TYPE_CHECKING:
@@ -41,7 +38,7 @@ class SolidLike:
         centre the wheelset, little enough that its hunting stays damped on the soft primary suspension.
     integral_time: of the speed loop [s]. Slow, because integral coupling of two wheels acts as a spring at the hunting
         frequency; it only removes what friction and unequal radii leave.
-    lead_pole: time constant [s] that replaces the armature's La/Ra in the speed loop.
+    lead_pole: time constant [s] that replaces the armature's La/Ra in the speed loop of DC motors.
     notch_frequency, notch_depth, notch_width: of the transmission's torsion mode with the wheel held by creep [Hz].
     yaw_frequency: crossover of the yaw-moment loop [Hz], below the hunting band of 2 to 8 Hz.
     sensor_frequency: low-pass of the inertial sensors [Hz], above the body's own modes near 1 Hz.
@@ -86,9 +83,8 @@ class SolidLike:
         Errors: InputError for a vehicle without drives or steering actuators.
         """
         plant = Plant.of(vehicle)
-        motors = Motors.of(vehicle, plant, self.timing, self.traction, speed)
+        motors = motors_of(vehicle, self.traction, self.timing, speed)
         d = Diagram(sample_time=self.timing.sample_time)
-        motors.prepare(d)
         sense_inertia(d, plant, self.timing, frequency=self.sensor_frequency)
         for wheelset in WHEELSETS:
             self._speed_loop(d, plant, motors, wheelset, track)
@@ -96,29 +92,27 @@ class SolidLike:
         return d.spec()
 
     def _damping(self, plant: Plant, speed: float) -> float:
-        """Wanted torque of each wheel over the half difference of their speeds [N m s/rad]."""
+        """Of the coupling between the wheels [N m s/rad]."""
         coupling = self.coupling * min(1.0, self.coupling_speed / speed)
         return coupling * self.contact.longitudinal_creep * plant.radius**2 / speed
 
     def _speed_loop(self, d: Diagram, plant: Plant, motors: Motors, w: Wheelset, track: Track) -> None:
-        """u = K(s) (lambda V rho/r0 - wd), with the back-EMF of the commanded difference added."""
+        """u = K(s) (lambda V rho/r0 - wd), with the back-EMF of the commanded difference added where there is one."""
         ts = self.timing.sample_time
         rho = database_curvature(d, f"{w.name}.rho.here", track, d.measure(f"{w.name}.s"))
         turn = d.product(f"{w.name}.turn", rho, d.measure(SPEED))
         error = d.sum(f"{w.name}.wd.error", {turn: plant.speed_ratio, speed_difference(d, w, self.timing): -1.0})
-        armature = plant.drive.armature_inductance / plant.drive.armature_resistance
-        shape = [
-            lead(armature, self.lead_pole, sample_time=ts),
-            notch(self.notch_frequency, depth=self.notch_depth, width=self.notch_width, sample_time=ts),
-        ]
+        shape = [notch(self.notch_frequency, depth=self.notch_depth, width=self.notch_width, sample_time=ts)]
+        if motors.lag > 0.0:
+            shape.insert(0, lead(motors.lag, self.lead_pole, sample_time=ts))
         shaped = d.filter(f"{w.name}.wd.shaped", error, shape)
-        limit = plant.steering_voltage_max
-        proportional = motors.gain(d, w, lambda v: self._damping(plant, v))
+        proportional = motors.gain(d, w.name, lambda v: self._damping(plant, v))
         name = f"{proportional}.integral"
         integral = name if d.has(name) else d.sum(name, {proportional: 1.0 / self.integral_time})
+        limit = motors.steering_max
         feedback = d.pi(f"{w.name}.u.feedback", shaped, proportional=proportional, integral=integral, limit=limit)
-        back_emf, per_turn = motors.back_emf(d, w, turn)
-        motors.command(d, w, d.sum(f"{w.name}.u", {feedback: 1.0, back_emf: per_turn}))
+        back_emf = motors.per_speed(d, w.name, plant.speed_ratio)
+        command_motors(d, motors, w.name, d.sum(f"{w.name}.u", {feedback: 1.0, turn: back_emf}))
 
     def _yaw_moment_loop(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
         """Integral control of the total yaw moment on the wheelset to what its spin needs, around the feedforward."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from klingel.control.common import SPEED, check_positive
+from klingel.control.basics import SPEED, Timing, check_positive
 from klingel.control.diagram import Diagram
 from klingel.control.slip import SlipControl
 from klingel.drives import running_resistance, traction_torque_max
@@ -87,7 +87,14 @@ class Traction:
         """A share of the torque that the motors give at the speed: -1 (braking) to 1; errors: InputError."""
         return cls(tuple(float(t) for t in time), notch=tuple(float(n) for n in notch), slip=slip or SlipControl())
 
-    def demand(self, d: Diagram, vehicle: Vehicle) -> str:
+    def torque(self, d: Diagram, vehicle: Vehicle, w: str, timing: Timing) -> str:
+        """The signal of the torque for each wheel of a pair [N m], what slip control takes off included."""
+        asked = DEMAND if d.has(DEMAND) else self._demand(d, vehicle)
+        torque = asked if self.slip is None else self.slip.limited(d, vehicle, w, asked, timing)
+        d.probe(f"{w}.torque_asked", "N m", torque)
+        return torque
+
+    def _demand(self, d: Diagram, vehicle: Vehicle) -> str:
         """The signal of the torque asked of every wheel [N m], within what the motors give and its rate."""
         speeds = speed_grid()
         limit = [traction_torque_max(vehicle, v) for v in speeds]
@@ -102,7 +109,8 @@ class Traction:
         else:
             asked = self._following(d, vehicle, now, most, least)
         within = d.saturation("traction.within", asked, least, most)
-        return d.rate_limit(DEMAND, within, self.torque_rate)
+        d.probe("traction.torque_asked", "N m", d.rate_limit(DEMAND, within, self.torque_rate))
+        return DEMAND
 
     def _following(self, d: Diagram, vehicle: Vehicle, now: str, most: str, least: str) -> str:
         """T = r0/8 [m* v_ref' + R(v_ref) + 2 pi f m* (e + integral of e/Ti)], e = v_ref - v; m* turns too."""

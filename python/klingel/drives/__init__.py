@@ -1,20 +1,29 @@
 """Traction drives: running resistance, operating point of the motors, transfer functions of Eqs (12) to (29).
 Equation numbers are those of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 207-217."""
 
+from klingel.drives.demand import Demand, Resistance, torque_demand
+from klingel.drives.induction import InductionPoint, induction_point, induction_torque_max
 from klingel.drives.limits import OperatingLimit, operating_limit, starting_point, traction_torque_max
 from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
 from klingel.drives.operating import OperatingPoint, base_speed, operating_point, operating_table
 from klingel.drives.resistance import DavisCoefficients, running_resistance, sncf_general
-from klingel.drives.transfer import DriveTransfer, WheelPair
+from klingel.drives.transfer import DriveTransfer, Rational, TwoInputs, WheelPair
 
 __all__ = [
     "DavisCoefficients",
+    "Demand",
     "DriveTransfer",
+    "InductionPoint",
     "OperatingLimit",
     "OperatingPoint",
+    "Rational",
+    "Resistance",
+    "TwoInputs",
     "WheelPair",
     "base_speed",
     "field_current",
+    "induction_point",
+    "induction_torque_max",
     "operating_limit",
     "operating_point",
     "operating_table",
@@ -22,6 +31,7 @@ __all__ = [
     "sncf_general",
     "starting_point",
     "torque_constant",
+    "torque_demand",
     "traction_torque_max",
     "wheel_torque",
     "wheel_torque_max",

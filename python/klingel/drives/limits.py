@@ -6,9 +6,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from klingel.drives.operating import WHEELS
-from klingel.drives.resistance import running_resistance
+from klingel.drives.demand import torque_demand
+from klingel.drives.induction import induction_torque_max
 from klingel.errors import InputError
+from klingel.vehicle import InductionDrive
 
 if TYPE_CHECKING:
     from klingel.vehicle import Drive, Vehicle
@@ -55,35 +56,35 @@ def operating_limit(drive: Drive, motor_speed: float, *, share: float | None = N
 
 
 def traction_torque_max(vehicle: Vehicle, speed: float) -> float:
-    """The torque [N m] that the motor of each wheel gives it at most at a speed [m/s], with x VaMax.
+    """The torque [N m] that the motor of each wheel gives it at most at a speed [m/s], with x VaMax for DC motors.
 
     Error: InputError for a vehicle without drives, or a negative speed.
     """
     drive = vehicle.drive
     if drive is None:
         raise InputError.single("drive", None, "is missing", remedy=f"{vehicle.name} is hauled; take a driven vehicle")
-    return operating_limit(drive, speed / vehicle.geometry.wheel_radius / drive.gear_ratio).wheel_torque
+    motor_speed = speed / vehicle.geometry.wheel_radius / drive.gear_ratio
+    if isinstance(drive, InductionDrive):
+        return (induction_torque_max(drive, motor_speed) - drive.rotor_damping * motor_speed) / drive.gear_ratio
+    return operating_limit(drive, motor_speed).wheel_torque
 
 
 def starting_point(vehicle: Vehicle, speed: float, *, margin: float) -> tuple[float, float]:
     """Field current [A] and armature voltage [V] that keep a vehicle at a speed [m/s] against its running resistance.
 
     margin: share of x VaMax that the back-EMF may reach, above the base speed it does. Standing still there is no
-    resistance to keep up with. Error: InputError for a vehicle without drives.
+    resistance to keep up with. Error: InputError for a vehicle without DC motors.
 
     >>> from klingel import library
     >>> starting_point(library.vehicle("mechatronic_irw"), 0.0, margin=0.97)
     (10.0, 0.0)
     """
-    drive = vehicle.drive
-    if drive is None:
-        raise InputError.single("drive", None, "is missing", remedy=f"{vehicle.name} is hauled; take a driven vehicle")
-    radius = vehicle.geometry.wheel_radius
-    motor_speed = speed / radius / drive.gear_ratio
+    drive = vehicle.dc_drive
+    demand = torque_demand(vehicle, drive, speed)
     field = drive.field_current_rated
-    if motor_speed <= 0.0:
-        return field, 0.0
-    field = min(field, margin * drive.traction_share * drive.armature_voltage_max / (drive.emf_constant * motor_speed))
-    torque = drive.gear_ratio * running_resistance(vehicle)(speed) / WHEELS * radius + drive.rotor_damping * motor_speed
+    if demand.motor_speed > 0.0:
+        most = margin * drive.traction_share * drive.armature_voltage_max
+        field = min(field, most / (drive.emf_constant * demand.motor_speed))
     constant = drive.emf_constant * field
-    return field, constant * motor_speed + drive.armature_resistance * torque / constant
+    current = drive.gear_ratio * demand.air_gap / constant
+    return field, constant * demand.motor_speed + drive.armature_resistance * current
