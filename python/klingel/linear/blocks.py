@@ -37,11 +37,11 @@ def eigen(model: LinearModel) -> Eigen:
     Right vectors have unit length in balanced states, left ones are their inverse: left^H right = 1.
     """
     free = _Free.of(model)
-    found = [(part, *_vectors(part.matrix)) for part in free.parts]
+    found = [(part, *_vectors(part)) for part in free.parts]
     values = np.concatenate([values for _, values, _ in found])
-    right = _side_by_side([(part, vectors * part.scale[:, None]) for part, _, vectors in found])
-    left = _side_by_side([(part, _inverse(vectors).conj().T / part.scale[:, None]) for part, _, vectors in found])
-    return Eigen(continuous(values, model.sample_time), free.whole_left(left), free.whole_right(right, values))
+    right = free.whole_right([(part, vectors) for part, _, vectors in found], values)
+    left = free.whole_left([(part, _inverse(vectors).conj().T) for part, _, vectors in found])
+    return Eigen(continuous(values, model.sample_time), left, right)
 
 
 def live(model: LinearModel) -> tuple[Complex, Complex]:
@@ -50,14 +50,14 @@ def live(model: LinearModel) -> tuple[Complex, Complex]:
     They are what is followed over a parameter; in no order, in half the time of `eigen`.
     """
     free = _Free.of(model)
-    kept = []
+    found = []
     for part in free.parts:
-        z, vectors = _vectors(part.matrix)
-        upper = lives(continuous(z, model.sample_time), model.sample_time) & (z.imag >= 0.0)
-        kept.append((part, z[upper], vectors[:, upper] * part.scale[:, None]))
-    values = np.concatenate([z for _, z, _ in kept])
-    right = _side_by_side([(part, vectors) for part, _, vectors in kept])
-    return continuous(values, model.sample_time), free.whole_right(right, values)
+        values, vectors = _vectors(part)
+        upper = lives(continuous(values, model.sample_time), model.sample_time) & (values.imag >= 0.0)
+        found.append((part, values[upper], vectors[:, upper]))
+    values = np.concatenate([values for _, values, _ in found])
+    right = free.whole_right([(part, vectors) for part, _, vectors in found], values)
+    return continuous(values, model.sample_time), right
 
 
 def eigenvalues(model: LinearModel) -> Complex:
@@ -99,8 +99,8 @@ def continuous(values: Complex, sample_time: float | None) -> Complex:
 class _Free:
     """A model's states, folded, without the arc length of the first body.
 
-    parts: that do not meet; along: places of all arc lengths in the model; first: the row of A that the first of these
-    had, which was dropped; value: its eigenvalue in A.
+    parts: that do not meet; along: places of all arc lengths; first: the row of A that the first of these had, which
+    was dropped; value: its eigenvalue in A.
     """
 
     parts: list[Part]
@@ -114,44 +114,42 @@ class _Free:
         names = [state.name for state in model.states]
         along = [i for i, name in enumerate(names) if name.endswith(".s")]
         value = 0.0 if model.sample_time is None else 1.0
-        A = model.A
-        if not _slides(A, along, value):
-            along = []
-        first = A[along[0]] if along else np.zeros(len(names))
-        if along:
-            A = A.copy()
-            A[along] -= first
-        halves = Halves.of(names, without=along[:1])
-        return cls(parts(halves.folded(A)), halves, along, first, value)
+        halves = Halves.of(names)
+        if not _slides(model.A, along, value):
+            return cls(parts(halves.folded(model.A)), halves, [], np.zeros(len(names)), value)
+        A, first = model.A.copy(), model.A[along[0]]
+        A[along] -= first
+        A[:, along[0]] = 0.0
+        apart = [part for part in parts(halves.folded(A)) if along[0] not in part.at]
+        return cls(apart, halves, along, first, value)
 
-    def whole_left(self, left: Complex) -> Complex:
+    def whole_left(self, vectors: Sequence[tuple[Part, Complex]]) -> Complex:
         """Left vectors over the model's states: those of the dropped arc length take what is subtracted from others."""
-        whole = self.halves.unfolded_rows(left)
+        whole = self._side_by_side([(part.at, own / part.scale[:, None]) for part, own in vectors])
         if self.along:
             whole[self.along[0]] = -whole[self.along].sum(axis=0)
         return whole
 
-    def whole_right(self, right: Complex, values: Complex) -> Complex:
+    def whole_right(self, vectors: Sequence[tuple[Part, Complex]], values: Complex) -> Complex:
         """Right vectors over the model's states: the dropped arc length follows from its own equation."""
-        whole = self.halves.unfolded_rows(right)
+        whole = self._side_by_side([(part.at, own * part.scale[:, None]) for part, own in vectors])
         if self.along:
             whole[self.along] += (self.first @ whole) / (values - self.value)
         return whole
 
+    def _side_by_side(self, vectors: Sequence[tuple[NDArray[np.intp], Complex]]) -> Complex:
+        whole = np.zeros((len(self.first), sum(own.shape[1] for _, own in vectors)), dtype=complex)
+        column = 0
+        for at, own in vectors:
+            whole[at, column : column + own.shape[1]] = own
+            column += own.shape[1]
+        self.halves.fold(whole)
+        return whole
 
-def _vectors(matrix: Matrix) -> tuple[Complex, Complex]:
-    values, vectors = np.linalg.eig(matrix)
+
+def _vectors(part: Part) -> tuple[Complex, Complex]:
+    values, vectors = np.linalg.eig(part.matrix)
     return values.astype(np.complex128), vectors.astype(np.complex128)
-
-
-def _side_by_side(vectors: Sequence[tuple[Part, Complex]]) -> Complex:
-    """Vectors of the parts as columns over all of their states."""
-    whole = np.zeros((sum(len(part.at) for part, _ in vectors), sum(v.shape[1] for _, v in vectors)), dtype=complex)
-    column = 0
-    for part, own in vectors:
-        whole[part.at, column : column + own.shape[1]] = own
-        column += own.shape[1]
-    return whole
 
 
 def _inverse(vectors: Complex) -> Complex:

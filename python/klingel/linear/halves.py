@@ -4,7 +4,7 @@ On straight track what is symmetric and what is antisymmetric do not: two proble
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
@@ -27,9 +27,8 @@ SIDE = re.compile(r"(?<![a-z])(left|right)(?![a-z])")
 class Halves:
     """Folds states into (left + right)/sqrt 2 and (left - right)/sqrt 2; folded back, they are what they were.
 
-    The sum takes the place of the left state, the difference that of the right one.
-    kept: places of the states but those left out; left, right: places of the pairs among the kept; states: how many
-    there are in all.
+    left, right: places of the states that differ in the side alone; the sum takes the place of the left one, the
+    difference that of the right one.
 
     >>> halves = Halves.of(["left.z", "body.z", "right.z"])
     >>> halves.folded(np.array([[5.0, 1.0, 2.0], [1.0, 7.0, 1.0], [2.0, 1.0, 5.0]])).round(3)
@@ -38,46 +37,26 @@ class Halves:
            [0.   , 0.   , 3.   ]])
     """
 
-    kept: Places
     left: Places
     right: Places
-    states: int
 
     @classmethod
-    def of(cls, names: Sequence[str], *, without: Collection[int] = ()) -> Halves:
-        """Of states with these names: left and right ones differ in the side alone. `without`: places to leave out."""
-        kept = [i for i in range(len(names)) if i not in without]
-        places = {names[i]: k for k, i in enumerate(kept)}
-        both = [(k, places.get(SIDE.sub("right", name), k)) for name, k in places.items() if "left" in name]
+    def of(cls, names: Sequence[str]) -> Halves:
+        """Of states with these names."""
+        places = {name: i for i, name in enumerate(names)}
+        both = [(i, places.get(SIDE.sub("right", name), i)) for name, i in places.items() if "left" in name]
         left, right = np.array([(i, j) for i, j in both if i != j], dtype=np.intp).reshape(-1, 2).T
-        return cls(np.array(kept, dtype=np.intp), left, right, len(names))
+        return cls(left, right)
 
     def folded(self, A: Matrix) -> Matrix:
-        """The matrix A (n x n) of a model, folded."""
-        folded = A[np.ix_(self.kept, self.kept)]
-        self._turn(folded)
-        self._turn(folded.T)
+        """The matrix A (n x n) of a model, folded, or a folded one as that of the model."""
+        folded = A.copy()
+        self.fold(folded)
+        self.fold(folded.T)
         return folded
 
-    def folded_rows(self, B: Matrix) -> Matrix:
-        """The matrix B (n x m) of a model, folded."""
-        folded = B[self.kept]
-        self._turn(folded)
-        return folded
-
-    def unfolded(self, A: Matrix) -> Matrix:
-        """A folded matrix (n x n) as that of the model."""
-        return self.unfolded_rows(self.unfolded_rows(A).T).T
-
-    def unfolded_rows(self, rows: NDArray[Number]) -> NDArray[Number]:
-        """Folded rows (n x m), such as eigenvectors as columns, over the model's states; what was left out is 0."""
-        own = rows.copy()
-        self._turn(own)
-        whole = np.zeros((self.states, rows.shape[1]), dtype=rows.dtype)
-        whole[self.kept] = own
-        return whole
-
-    def _turn(self, rows: NDArray[Number]) -> None:
+    def fold(self, rows: NDArray[Number]) -> None:
+        """Folds rows (n x m) in place, such as the matrix B of a model or eigenvectors, or folds them back."""
         left, right = rows[self.left], rows[self.right]
         rows[self.left] = (left + right) * np.sqrt(0.5)
         rows[self.right] = (left - right) * np.sqrt(0.5)

@@ -72,7 +72,8 @@ def held(plant: LinearModel, sample_time: float) -> tuple[Matrix, Matrix]:
     Inputs count in units of their largest effect, or they would decide into how many parts the sample is divided.
     """
     halves = Halves.of([state.name for state in plant.states])
-    A, B = halves.folded(plant.A), halves.folded_rows(plant.B)
+    A, B = halves.folded(plant.A), plant.B.copy()
+    halves.fold(B)
     phi, gamma = np.zeros_like(A), np.zeros_like(B)
     for at, balanced, scale in parts(A):
         b = B[at] / scale[:, None]
@@ -84,7 +85,8 @@ def held(plant: LinearModel, sample_time: float) -> tuple[Matrix, Matrix]:
         whole = expm(block * sample_time)[:n] * scale[:, None]
         phi[np.ix_(at, at)] = whole[:, :n] / scale
         gamma[np.ix_(at, acting)] = whole[:, n:] * effect[acting]
-    return halves.unfolded(phi), halves.unfolded_rows(gamma)
+    halves.fold(gamma)
+    return halves.folded(phi), gamma
 
 
 def close(plant: LinearModel, control: dict[str, Any]) -> LinearModel:
