@@ -8,9 +8,10 @@ from scipy.linalg import expm
 from tests.linear.masses import chain, model, on_two_axles
 
 from klingel.errors import InputError
+from klingel.linear.margins import loop_gain, margins
 from klingel.linear.measured import estimate, random_phases
 from klingel.linear.model import LinearModel
-from klingel.linear.response import Resolvent, frequency_response, irregularity, loop_gain, margins, positions
+from klingel.linear.response import Resolvent, frequency_response, irregularity, positions
 
 F = np.geomspace(0.05, 40.0, 200)
 JW = 2j * np.pi * F

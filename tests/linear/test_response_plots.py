@@ -75,4 +75,11 @@ def test_effects_are_ranked_and_signed() -> None:
     (axis,) = effects(table, "damping_effect", title="damping", unit="-", count=2).axes
     assert [tick.get_text() for tick in axis.get_yticklabels()] == ["b", "c"]
     widths = {round(float(bar.get_width()), 6): str(bar.get_hatch() or "") for bar in axis.patches}
-    assert widths == {-0.005: "////", 0.002: ""}
+    assert widths == {-5.0: "////", 2.0: ""}
+    assert axis.get_xlabel() == "change for a parameter 1 % larger  [10⁻³]"
+
+
+def test_bode_of_a_list_that_begins_at_0_hz() -> None:
+    f = np.append(0.0, F)
+    figure = bode([Curve("y0", f, frequency_response(TWO, "u0", "y0", f))], title="one", unit="m/N")
+    assert figure.axes[-1].get_xlim() == pytest.approx((F[0], F[-1]))

@@ -22,6 +22,10 @@ MARGINAL = 1e-4
 """Eigenvalues with a real part above minus this [1/s] do not decay in hours: integrators, the free arc length."""
 
 
+ROUNDING = 1e-8
+"""Part of the largest Hankel value that rounding may add to an error: twenty times the most that was measured."""
+
+
 @dataclass(frozen=True, eq=False)
 class Parts:
     """A model as the sum of two: kept (does not decay, or too slowly to tell) and decaying.
@@ -44,7 +48,8 @@ def reduced(model: LinearModel, order: int, *, scales: Mapping[str, float] | Non
     order: at least the number of states that are kept exactly (see `hankel_values`), at most that of the model;
     scales: sizes of inputs and outputs by name, in their units, 1 for those not named: what counts as one for the
     weighing and for the bound. The bound is the largest singular value that output/scale over input/scale can err by at
-    any frequency (H-infinity): twice the sum of the Hankel values left out. A sampled model stays sampled.
+    any frequency (H-infinity): twice the sum of the Hankel values left out, and 1e-8 of the largest one for rounding,
+    which is measured and not proven: a bound near that says no more. A sampled model stays sampled.
     The states are combinations of the model's and have no names of their own. Errors: InputError for an order out of
     range, an unknown name or a scale that is not positive.
     """
@@ -56,7 +61,7 @@ def reduced(model: LinearModel, order: int, *, scales: Mapping[str, float] | Non
         remedy = f"give a whole number from {fixed} (states that do not decay) to {most}"
         raise InputError.single("order", order, "is no order for this model", remedy=remedy)
     count = min(order - fixed, int(np.sum(parts.hankel > 0.0)))
-    bound = 2.0 * float(np.sum(parts.hankel[count:]))
+    bound = 2.0 * float(np.sum(parts.hankel[count:])) + ROUNDING * float(parts.hankel.max(initial=0.0))
     A, B, C, D = parts.decaying
     L, R = parts.left[:, :count], parts.right[:, :count]
     A, B, C = L.T @ A @ R, L.T @ B, C @ R

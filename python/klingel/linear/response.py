@@ -13,6 +13,7 @@ from scipy.linalg import matrix_balance, schur
 
 from klingel.errors import InputError, nearest
 from klingel.linear.model import LinearModel, Signal
+from klingel.linear.standing import NIL, refuse, standing
 from klingel.track.irregularity import KINDS, RAILS, Kind
 
 Real = NDArray[np.float64]
@@ -51,12 +52,9 @@ class Resolvent:
         return cls(T, Z.conj().T / scale, scale[:, None] * Z)
 
     def solve(self, s: Complex, right: Complex) -> Complex:
-        """X (n, f, k) with (s_f I - A) X_f = right_f; s: (f); right: (n, f, k) or (n, k) for the same at every s.
-
-        Errors: InputError where s is an eigenvalue to rounding.
-        """
+        """X (n, f, k) with (s_f I - A) X_f = right_f, no s an eigenvalue; s: (f); right: (n, f, k), or (n, k) for the
+        same at every s."""
         n, f, k = len(self.triangular), len(s), right.shape[-1]
-        self._check(s)
         X = np.empty((n, f, k), dtype=np.complex128)
         step = max(1, COLUMNS // max(k, 1))
         for first in range(0, f, step):
@@ -77,16 +75,11 @@ class Resolvent:
             Y[:begin] += T[:begin, begin:end] @ Y[begin:end]
         return np.asarray(self.out @ Y)
 
-    def _check(self, s: Complex) -> None:
+    def meets(self, s: Complex) -> NDArray[np.bool_]:
+        """Which of s are eigenvalues to rounding."""
         poles = np.diag(self.triangular)
-        if len(poles) == 0 or len(s) == 0:
-            return
-        floor = 1e-14 * float(np.abs(self.triangular).max())
-        near = np.abs(s[:, None] - poles).min(axis=1) <= floor
-        if near.any():
-            value = abs(complex(s[near][0]))
-            message = "is an eigenvalue of the model, where its response is infinite"
-            raise InputError.single("frequency", value, message, remedy="take another one; above zero if it is zero")
+        floor = NIL * float(np.abs(self.triangular).max(initial=0.0))
+        return np.asarray(np.abs(s[:, None] - poles).min(axis=1, initial=np.inf) <= floor)
 
 
 def points(model: LinearModel, frequencies: ArrayLike) -> Complex:
@@ -122,7 +115,8 @@ def frequency_response(
     `irregularity`); output: the same, or a sequence of them. Returns an array (frequencies), for a sequence
     (frequencies, outputs). A sampled model answers at its samples to an input held between them; with plant, the
     continuous model that it was made from, to one that goes on between them, as the track does.
-    Errors: InputError for unknown names, frequencies that a sampled model does not have, and those of undamped modes.
+    At 0 Hz it is the steady gain; what grows for ever, such as the place along the track, has none. Errors: InputError
+    for unknown names, frequencies that a sampled model does not have, and outputs that are infinite at one of them.
 
     >>> one = lambda v: np.array([[v]])
     >>> lag = LinearModel("lag", 0.0, (Signal("x", "m"),), (Signal("u", "m"),), (Signal("y", "m"),), one(-1.0),
@@ -133,18 +127,31 @@ def frequency_response(
     s = points(model, frequencies)
     several = not isinstance(output, (str, Mapping))
     wanted = cast("list[str | Combination]", list(output) if several else [output])
-    u = input_weights(model, input, len(s))
-    direct = all_outputs(model, s, u[:, :, None], plant=plant)[:, :, 0]
-    rows = [np.sum(output_weights(model, each, len(s)) * direct, axis=0) for each in wanted]
+    weights = [output_weights(model, each, len(s)) for each in wanted]
+    used = np.flatnonzero(np.any(weights, axis=(0, 2)))
+    seen = model.select(outputs=[model.outputs[i].name for i in used])
+    direct = all_outputs(seen, s, input_weights(model, input, len(s))[:, :, None], plant=plant)[:, :, 0]
+    rows = [np.sum(weight[used] * direct, axis=0) for weight in weights]
     return np.stack(rows, axis=-1) if several else rows[0]
 
 
 def all_outputs(model: LinearModel, s: Complex, u: Complex, *, plant: LinearModel | None = None) -> Complex:
-    """All outputs (p, f, k) at points s (f) to inputs u (m, f, k); plant: of `frequency_response`."""
+    """All outputs (p, f, k) at points s (f) to inputs u (m, f, k); plant: of `frequency_response`.
+
+    Errors: InputError where s is an eigenvalue, for the outputs that are infinite there.
+    """
     b = _product(model.B, u)
     if plant is not None:
         b[: len(plant.A)] = _between_samples(model, plant, s, u)
-    x = Resolvent.of(model.A).solve(s, b)
+    resolvent = Resolvent.of(model.A)
+    alone = resolvent.meets(s)
+    x = np.empty_like(b)
+    x[:, ~alone] = resolvent.solve(s[~alone], b[:, ~alone])
+    for i in np.flatnonzero(alone):
+        found = standing(model.A, model.C, s[i], b[:, i])
+        T = model.sample_time
+        refuse(model, found.growing, u[:, i], abs(s[i] if T is None else np.angle(s[i]) / T) / (2.0 * np.pi))
+        x[:, i] = found.rest
     return _product(model.C, x) + _product(model.D, u)
 
 
@@ -159,9 +166,15 @@ def _between_samples(model: LinearModel, plant: LinearModel, z: Complex, u: Comp
     if model.sample_time is None or plant.sample_time is not None or model.states[:n] != plant.states:
         remedy = "give the sampled model's own plant: the same scenario linearised with controllers=False"
         raise InputError.single("plant", plant.name, "is not the continuous part of the model", remedy=remedy)
-    jw = 1j * np.angle(z) / model.sample_time
-    X = Resolvent.of(plant.A).solve(np.asarray(jw), _product(plant.B, u))
-    return np.asarray(z[:, None] * X - _product(model.A[:n, :n], X))
+    jw = np.asarray(1j * np.angle(z) / model.sample_time)
+    b, resolvent = _product(plant.B, u), Resolvent.of(plant.A)
+    alone = resolvent.meets(jw)
+    X, got = np.empty_like(b), np.zeros_like(b)
+    X[:, ~alone] = resolvent.solve(jw[~alone], b[:, ~alone])
+    for i in np.flatnonzero(alone):
+        X[:, i], drift, _ = standing(plant.A, plant.C, jw[i], b[:, i])
+        got[:, i] = model.sample_time * z[i] * drift  # of drift/s: (z - z0)/(s - s0) is T z0
+    return np.asarray(got + z[:, None] * X - _product(model.A[:n, :n], X))
 
 
 def input_weights(model: LinearModel, combination: str | Combination, count: int) -> Complex:
@@ -237,64 +250,3 @@ def irregularity(
             share = shares[side(wheel)]
             weights[f"{wheel}.{name}"] = share * (jw * met if name.endswith("_rate") else met)
     return weights
-
-
-@dataclass(frozen=True)
-class Margins:
-    """How far a loop is from instability.
-
-    phase: least angle that L may lag or lead more [rad], at phase_frequency [Hz]; gain: factor that L may grow by, at
-    gain_frequency; distance: least |1 + L|, at distance_frequency. Infinite, with frequency NaN, where there is none.
-    """
-
-    gain: float
-    gain_frequency: float
-    phase: float
-    phase_frequency: float
-    distance: float
-    distance_frequency: float
-
-
-def loop_gain(
-    model: LinearModel, input: str | Combination, total: str | Combination, frequencies: ArrayLike
-) -> Complex:
-    """L of the loop that closes through an actuating signal, all other loops closed: 1 + L = input / total.
-
-    model: with its controllers; input: what is added to the signal that the controller sends; total: the channel that
-    holds both, in the same weights. With u added, the sum is (1 + L)^-1 u. Returns an array over the frequencies [Hz].
-    """
-    return np.asarray(1.0 / frequency_response(model, input, total, frequencies) - 1.0)
-
-
-def margins(L: Complex, frequencies: ArrayLike) -> Margins:
-    """Margins of an open-loop response over frequencies [Hz], interpolated between neighbours.
-
-    >>> f = np.geomspace(0.01, 10.0, 4001)
-    >>> s = 2j * np.pi * f
-    >>> found = margins(4.0 / (s + 1.0) ** 3, f)
-    >>> round(found.gain, 3), round(2.0 * np.pi * found.gain_frequency, 3), round(found.phase, 3)
-    (2.0, 1.732, 0.474)
-    """
-    f = np.atleast_1d(np.asarray(frequencies, dtype=np.float64))
-    size, angle = np.log(np.abs(L)), np.unwrap(np.angle(L))
-    phases = [(_wrapped(float(np.interp(w, f, angle)) + np.pi), w) for w in _crossings(f, size)]
-    turns = np.arange(np.floor(angle.min() / (2.0 * np.pi)) - 1.0, np.ceil(angle.max() / (2.0 * np.pi)) + 1.0)
-    opposite = [w for turn in turns for w in _crossings(f, angle - np.pi * (2.0 * turn + 1.0))]
-    gains = [(float(np.exp(-np.interp(w, f, size))), w) for w in opposite]
-    phase = min(phases, default=(np.inf, np.nan))
-    gain = min((each for each in gains if each[0] > 1.0), default=(np.inf, np.nan))
-    distance = np.abs(1.0 + L)
-    least = int(np.argmin(distance))
-    return Margins(gain[0], gain[1], phase[0], phase[1], float(distance[least]), float(f[least]))
-
-
-def _wrapped(angle: float) -> float:
-    """Size of an angle between -pi and pi."""
-    return abs((angle + np.pi) % (2.0 * np.pi) - np.pi)
-
-
-def _crossings(f: Real, value: Real) -> list[float]:
-    """Where a function over f changes its sign, interpolated."""
-    i = np.flatnonzero(np.sign(value[:-1]) * np.sign(value[1:]) < 0.0)
-    share = value[i] / (value[i] - value[i + 1])
-    return [float(x) for x in f[i] + share * (f[i + 1] - f[i])]

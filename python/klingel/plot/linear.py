@@ -6,13 +6,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from klingel.plot.scale import labelled, readable, valued
 from klingel.plot.style import BAND, INK, PALE, panels, styled
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
     from klingel.linear.locus import RootLocus
@@ -50,9 +55,6 @@ KINDS = {
 SAME = 0.02
 """Relative distance of eigenvalues below which they are drawn as one."""
 
-UNIT_WORDS = {"m/s": ("km/h", 3.6)}
-"""Units that people read, and how many of them an SI unit is."""
-
 
 def modes_figure(found: Sequence[Mode], *, title: str, highest: float = HIGHEST) -> Figure:
     """Oscillations by frequency, one row each: name, frequency, damping ratio.
@@ -79,7 +81,7 @@ def modes_figure(found: Sequence[Mode], *, title: str, highest: float = HIGHEST)
         axis.axvline(0.0, color=INK, lw=0.9)
         left = 1.3 * min(ratios.min(initial=0.0), 0.0)
         if left < 0.0:
-            axis.axvspan(left, 0.0, color=BAND, zorder=0)
+            axis.axvspan(left, 0.0, facecolor=BAND, edgecolor="none", zorder=0, label="unstable")
         axis.set_xlim(left=left)
         axis.set_yticks(
             places, [f"{_named(mode, many)}   {mode.frequency:6.2f} Hz" for mode, many in drawn], fontsize=7.6
@@ -87,7 +89,7 @@ def modes_figure(found: Sequence[Mode], *, title: str, highest: float = HIGHEST)
         axis.set_ylim(-0.8, len(drawn) - 0.2)
         axis.grid(visible=False, axis="y")
         axis.set_xlabel("damping ratio  [%]")
-        figure.legend(loc="outside lower center", ncols=4, handletextpad=0.2)
+        figure.legend(loc="outside lower center", ncols=5, handletextpad=0.4)
         return figure
 
 
@@ -132,25 +134,34 @@ def locus_figure(locus: RootLocus, *, title: str, highest: float = HIGHEST) -> F
         highest: frequency [Hz].
 
     Returns:
-        The figure. The plane is drawn about the imaginary axis; a ring marks the first value of the parameter.
+        The figure. The plane is drawn about the imaginary axis; a ring marks the first value of the parameter, as its
+        legend says; units take prefixes, so that numbers are short.
     """
-    unit, per = UNIT_WORDS.get(locus.unit, (locus.unit, 1.0))
-    values = locus.values * per
+    unit, per = readable(locus.unit, locus.values)
+    values, label = locus.values * per, labelled(locus.parameter, unit)
     with styled():
         figure = Figure(figsize=(9.6, 4.6))
         plane, ratio = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
         figure.suptitle(title, x=0.01, ha="left", weight="bold", size=10)
-        _plane(
-            figure, plane, locus, values, highest, f"{locus.parameter}  [{unit}]" if unit != "1" else locus.parameter
-        )
+        _plane(figure, plane, locus, values, highest, label)
         _ratios(ratio, locus, values, highest)
-        ratio.set_xlabel(f"{locus.parameter}  [{unit}]" if unit != "1" else locus.parameter)
-        if np.abs(values).max() >= 1e4:
-            ratio.ticklabel_format(axis="x", style="sci", scilimits=(0, 0), useMathText=True)
+        ratio.set_xlabel(label)
+        marks = _marks(valued(values[0], unit), valued(values[-1], unit))
+        figure.legend(handles=marks, loc="outside lower left", ncols=1, handletextpad=0.4)
         figure.legend(
             *ratio.get_legend_handles_labels(), loc="outside lower right", ncols=2, handlelength=2.8, columnspacing=1.2
         )
         return figure
+
+
+def _marks(first: str, last: str) -> list[Artist]:
+    """What the marks of the plane mean."""
+    middle = matplotlib.colormaps["viridis"](0.5)
+    return [
+        Line2D([], [], ls="", marker="o", ms=4.2, mfc="white", mec=INK, mew=0.8, label=f"at {first}"),
+        Line2D([], [], color="#c9c9c9", lw=0.8, marker="o", ms=3.0, mfc=middle, mec=middle, label=f"on to {last}"),
+        Patch(facecolor=BAND, edgecolor=PALE, lw=0.4, label="unstable"),
+    ]
 
 
 def least_damped(locus: RootLocus, count: int, highest: float = HIGHEST) -> list[int]:

@@ -66,6 +66,7 @@ def _growth(axis: Axes, critical: CriticalSpeed) -> None:
     bottom, top = axis.get_ylim()
     top = max(top, 0.1 * (top - bottom))
     axis.axhspan(0.0, top, color=BAND, zorder=0)
+    axis.annotate("unstable", (0.01, 0.0), (0, 3), xycoords=("axes fraction", "data"), textcoords="offset points")
     axis.set_ylim(bottom, top)
     axis.set_ylabel("growth  [1/s]")
 

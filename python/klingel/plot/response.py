@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, MultipleLocator, NullFormatter
 from numpy.typing import NDArray
 
+from klingel.plot.scale import labelled, raised, readable
 from klingel.plot.style import INK, PALE, panels, styled
 
 if TYPE_CHECKING:
@@ -68,8 +69,9 @@ def bode(
 ) -> Figure:
     """Bode diagram: magnitude and phase over frequency, and coherence with the simulator if there is a measurement.
 
-    curves: one to five; title: one or two lines; unit: of the magnitude, output over input; measured: response measured
-    on the simulator, drawn as points for its channel `output` (the first if none is given).
+    curves: one to five, each with frequencies above 0 Hz; title: one or two lines; unit: of the magnitude, output over
+    input; measured: response measured on the simulator, drawn as points for its channel `output` (the first if none is
+    given).
     """
     with styled():
         figure, axes = panels(2 if measured is None else 3, height=4.4 if measured is None else 5.4)
@@ -84,8 +86,8 @@ def bode(
         phase.set_ylabel("phase  [°]")
         phase.yaxis.set_major_locator(_quarter_turns(phase))
         size.legend(loc="best", handlelength=3.0)
-        ends = [each.frequencies[[0, -1]] for each in curves]
-        axes[-1].set_xlim(min(low for low, _ in ends), max(high for _, high in ends))
+        above = [each.frequencies[each.frequencies > 0.0] for each in curves]  # 0 Hz has no place on such an axis
+        axes[-1].set_xlim(min(f[0] for f in above), max(f[-1] for f in above))
         _plain_ticks(axes[-1].xaxis, *axes[-1].get_xlim())
         _plain_ticks(size.yaxis, *size.get_ylim())
         axes[-1].set_xlabel("frequency  [Hz]")
@@ -153,7 +155,7 @@ def spectrum(
     output: its name; simulated: frequencies [Hz] and one-sided densities of a simulation, drawn beside.
     """
     column = [signal.name for signal in response.outputs].index(output)
-    unit = _si(response.outputs[column].unit)
+    unit = raised(response.outputs[column].unit)
     with styled():
         figure, (axis,) = panels(1)
         rms = response.rms()[output]
@@ -185,7 +187,8 @@ def effects(table: pd.DataFrame, column: str, *, title: str, unit: str, count: i
     """
     values = table[column].to_numpy(dtype=np.float64)
     first = np.argsort(-np.abs(values), kind="stable")[:count]
-    shown, labels = 0.01 * values[first], [table["parameter"].iloc[i] for i in first]
+    unit, per = readable(unit, 0.01 * values)
+    shown, labels = 0.01 * per * values[first], [table["parameter"].iloc[i] for i in first]
     with styled():
         figure, (axis,) = panels(1, height=1.2 + 0.27 * len(first))
         axis.set_title(title, pad=10)
@@ -197,10 +200,5 @@ def effects(table: pd.DataFrame, column: str, *, title: str, unit: str, count: i
         axis.axvline(0.0, color=INK, lw=0.7)
         axis.xaxis.set_major_locator(MaxNLocator(6))
         axis.grid(axis="y", visible=False)
-        axis.set_xlabel(f"change for a parameter 1 % larger  [{unit}]")
+        axis.set_xlabel(labelled("change for a parameter 1 % larger", unit))
         return figure
-
-
-def _si(unit: str) -> str:
-    """Exponents raised."""
-    return unit.replace("2", "²")
