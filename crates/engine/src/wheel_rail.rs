@@ -41,7 +41,7 @@ pub fn wheels<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>,
     let rails = inputs[m.places.rails..].chunks_exact(RAIL.len());
     for ((wheel, state), rail) in m.wheels.iter().zip(&mut w.wheels).zip(rails) {
         let motion = &w.motions[wheel.body];
-        let (forces, moment) = wheel_on_rail(m, wheel, motion, x, rail, dx)?;
+        let (forces, moment) = wheel_on_rail(m, wheel, motion, x, rail, dx, w.secants)?;
         let loads = &mut w.loads[wheel.body];
         loads.force_T += forces.force_T;
         loads.moment_T += moment;
@@ -62,6 +62,7 @@ fn wheel_on_rail<S: Scalar>(
     x: &[S],
     rail: &[S],
     dx: &mut [S],
+    secants: bool,
 ) -> Result<(WheelState<S>, Vec3<S>), Fault> {
     let (sign, spin) = (wheel.sign, x[m.rotors[wheel.rotor].state]);
     // point on the axle line in the tape-circle plane: position and velocity in T
@@ -129,7 +130,7 @@ fn wheel_on_rail<S: Scalar>(
                 eta: eta + lag_y,
                 phi: phi * sense,
             };
-            let [fx, fy, mz] = m.creep.force(&rolling);
+            let [fx, fy, mz] = if secants { m.creep.force_with_secants(&rolling) } else { m.creep.force(&rolling) };
             let mz = mz * sense;
 
             let force_T = Vec3::new(fx, S::zero(), S::zero()) + across * fy - into_rail * normal;
