@@ -50,7 +50,7 @@ pub fn wheels<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>,
             Some(adhesion) => adhesion.at(x[m.bodies[wheel.body].state], wheel.sign),
             None => S::constant(wheel.friction),
         };
-        let (forces, moment) = wheel_on_rail(m, wheel, motion, x, rail, friction, dx)?;
+        let (forces, moment) = wheel_on_rail(m, wheel, motion, x, rail, friction, dx, w.secants)?;
         let loads = &mut w.loads[wheel.body];
         loads.force_T += forces.force_T;
         loads.moment_T += moment;
@@ -72,6 +72,7 @@ fn wheel_on_rail<S: Scalar>(
     rail: &[S],
     standing_friction: S,
     dx: &mut [S],
+    secants: bool,
 ) -> Result<(WheelState<S>, Vec3<S>), Fault> {
     let (sign, spin) = (wheel.sign, x[m.rotors[wheel.rotor].state]);
     // point on the axle line in the tape-circle plane: position and velocity in T
@@ -139,7 +140,7 @@ fn wheel_on_rail<S: Scalar>(
                 eta: eta + lag_y,
                 phi: phi * sense,
             };
-            let [fx, fy, mz] = m.creep.force(&rolling);
+            let [fx, fy, mz] = if secants { m.creep.force_with_secants(&rolling) } else { m.creep.force(&rolling) };
             let mz = mz * sense;
 
             let force_T = Vec3::new(fx, S::zero(), S::zero()) + across * fy - into_rail * normal;
