@@ -40,6 +40,12 @@ pub struct WheelState<S> {
     /// Creepages along and across, means over the patches weighted with their loads \[-\].
     pub creep_x: S,
     pub creep_y: S,
+    /// Powers on the wheel's contact \[W\]: lost to friction and to the damping of the approach, taken by the elastic
+    /// normal force as it is pressed in, and given by a rail that moves.
+    pub friction_power: S,
+    pub damping_power: S,
+    pub elastic_power: S,
+    pub rail_power: S,
     /// Load of the patches so slender that the creep table does not hold their a/b \[N\].
     pub slender_force: S,
 }
@@ -113,7 +119,8 @@ fn wheel_on_rail<S: Scalar>(
             let into_rail = Vec3::new(S::zero(), sin_T * sign, cos_T);
             let w_T = body.R_TF.apply(w_F);
 
-            let damping = ((slip_T - rail_rate_T).dot(into_rail) * m.contact_dissipation + 1.0).positive();
+            let approach = (slip_T - rail_rate_T).dot(into_rail);
+            let damping = (approach * m.contact_dissipation + 1.0).positive();
             let normal = patch.normal_force * damping;
             let mean_speed = (v_T.x() + spin * patch.radius) * 0.5;
             let v_ref = (mean_speed.square() + CREEP_REFERENCE_FLOOR * CREEP_REFERENCE_FLOOR).sqrt();
@@ -134,6 +141,10 @@ fn wheel_on_rail<S: Scalar>(
             state.normal[zone] = normal;
             state.t_gamma += (fx * xi).abs() + (fy * eta).abs();
             state.spin_work += (mz * phi).abs();
+            state.friction_power -= (fx * xi + fy * eta + mz * phi) * v_ref;
+            state.damping_power += (normal - patch.normal_force) * approach;
+            state.elastic_power += patch.normal_force * approach;
+            state.rail_power -= normal * rail_rate_T.dot(into_rail);
             state.creep_x += normal * xi;
             state.creep_y += normal * eta;
             report_angle(&mut state, patch.angle, normal);

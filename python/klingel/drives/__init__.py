@@ -1,21 +1,35 @@
 """Traction drives: running resistance, operating point of the motors, transfer functions of Eqs (12) to (29).
 Equation numbers are those of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 207-217."""
 
+from klingel.drives.formulas import (
+    DavisCoefficients,
+    Resistance,
+    curve_resistance,
+    polynomial,
+    sauthoff,
+    sncf_general,
+    strahl,
+)
 from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
 from klingel.drives.operating import OperatingPoint, operating_point, operating_table
-from klingel.drives.resistance import DavisCoefficients, running_resistance, sncf_general
+from klingel.drives.resistance import running_resistance
 from klingel.drives.transfer import DriveTransfer, WheelPair
 
 __all__ = [
     "DavisCoefficients",
     "DriveTransfer",
     "OperatingPoint",
+    "Resistance",
     "WheelPair",
+    "curve_resistance",
     "field_current",
     "operating_point",
     "operating_table",
+    "polynomial",
     "running_resistance",
+    "sauthoff",
     "sncf_general",
+    "strahl",
     "torque_constant",
     "wheel_torque",
     "wheel_torque_max",

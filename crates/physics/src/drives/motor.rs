@@ -91,6 +91,34 @@ impl Drive {
         }
     }
 
+    /// Copper loss of the armature \[W\].
+    #[inline(always)]
+    pub fn copper<S: Scalar>(&self, armature_current: S) -> S {
+        armature_current.square() * self.armature_resistance
+    }
+
+    /// Friction of the rotor, CM wM^2 \[W\].
+    #[inline(always)]
+    pub fn friction<S: Scalar>(&self, motor_speed: S) -> S {
+        motor_speed.square() * self.rotor_damping
+    }
+
+    /// Power that the damping of the shaft turns to heat \[W\].
+    #[inline(always)]
+    pub fn transmission<S: Scalar>(&self, motor_speed: S, wheel_speed: S) -> S {
+        self.twist_rate(motor_speed, wheel_speed).square() * self.transmission_damping
+    }
+
+    /// Energy in the armature's field \[J\].
+    pub fn magnetic<S: Scalar>(&self, armature_current: S) -> S {
+        armature_current.square() * (0.5 * self.armature_inductance)
+    }
+
+    /// Energy of the twisted shaft \[J\].
+    pub fn elastic<S: Scalar>(&self, twist: S) -> S {
+        twist.square() * (0.5 * self.transmission_stiffness)
+    }
+
     /// The state and the armature voltage \[V\] that hold a wheel speed \[rad/s\] and a shaft torque \[N m\].
     pub fn steady_state(&self, wheel_speed: f64, shaft_torque: f64) -> (DriveState<f64>, f64) {
         let motor_speed = wheel_speed / self.gear_ratio;
@@ -156,14 +184,17 @@ mod tests {
         let (voltage, wheel_speed) = (905.0, 106.0);
         let r = DRIVE.rates(&state, voltage, wheel_speed);
         let shaft = DRIVE.shaft_torque(&state, wheel_speed);
-        let slip = state.motor_speed / 3.0 - wheel_speed;
-        let stored = DRIVE.armature_inductance * state.armature_current * r.armature_current
-            + DRIVE.rotor_inertia * state.motor_speed * r.motor_speed
-            + DRIVE.transmission_stiffness * state.twist * r.twist;
-        let heat = DRIVE.armature_resistance * state.armature_current.powi(2)
-            + DRIVE.rotor_damping * state.motor_speed.powi(2)
-            + DRIVE.transmission_damping * slip * slip;
+        let h = 1e-6;
+        let energy = |t: f64| {
+            DRIVE.magnetic(state.armature_current + t * r.armature_current)
+                + DRIVE.elastic(state.twist + t * r.twist)
+                + 0.5 * DRIVE.rotor_inertia * (state.motor_speed + t * r.motor_speed).powi(2)
+        };
+        let stored = (energy(h) - energy(-h)) / (2.0 * h);
+        let heat = DRIVE.copper(state.armature_current)
+            + DRIVE.friction(state.motor_speed)
+            + DRIVE.transmission(state.motor_speed, wheel_speed);
         let input = voltage * state.armature_current;
-        assert!((input - heat - stored - shaft * wheel_speed).abs() < 1e-9 * input);
+        assert!((input - heat - stored - shaft * wheel_speed).abs() < 1e-6 * input);
     }
 }
