@@ -67,6 +67,8 @@ pub struct Energy {
     shown: Vec<usize>,
     graded: bool,
     blown: bool,
+    /// Bushings with a damper.
+    damped: Vec<usize>,
     /// Bodies of which a guide keeps some motion.
     guided: Vec<usize>,
     /// Stored at the start \[J\].
@@ -81,21 +83,21 @@ impl Energy {
         let excited = |part: &str| m.run.excitations.iter().any(|e| e.input.contains(part));
         let graded = matches!(&m.track, Course::Laid(alignment) if alignment.climbs());
         let guided: Vec<usize> = (0..m.bodies.len()).filter(|&i| !m.bodies[i].pitches).collect();
+        let damped = (0..m.bushings.len()).filter(|&i| m.bushings[i].1.damps()).collect();
         let (driven, wheels, blown) = (!m.drives.is_empty(), !m.wheels.is_empty(), excited("wind."));
         let has = |account: Account| match account {
             Traction | Regeneration | CopperArmature | MotorFriction | Transmission => driven,
             Actuators => !m.actuators.is_empty(),
             Hold => m.hold.is_some(),
             Wind => blown,
-            Rails => excited(".rail_"),
             Gradient => graded,
             Guides => !guided.is_empty(),
             RunningResistance => m.drag.is_some(),
-            ContactFriction | ContactDamping | ContactElastic => wheels,
+            ContactFriction | ContactDamping | ContactElastic | Rails => wheels,
             Suspension => !m.joints.is_empty(),
         };
         let shown = (0..ACCOUNTS.len()).filter(|&i| has(ACCOUNTS[i].0)).collect();
-        Self { shown, graded, blown, guided, start: [0.0; STORED.len()] }
+        Self { shown, graded, blown, damped, guided, start: [0.0; STORED.len()] }
     }
 
     /// Channels, in the order that `fill` writes: the accounts, what is stored, and what does not close.
@@ -130,7 +132,7 @@ impl Energy {
         power.fill(0.0);
         let mut book = |account: Account, watts: f64| power[account as usize] += watts;
         drives(m, x, inputs, w, &mut book);
-        elements(m, x, w, &mut book);
+        self.elements(m, x, w, &mut book);
         for wheel in &w.wheels {
             book(ContactFriction, wheel.friction_power);
             book(ContactDamping, wheel.damping_power);
@@ -157,6 +159,20 @@ impl Energy {
             book(Guides, guide(m, i, w, dx));
         }
     }
+
+    /// Dampers, and what the actuators do on their way.
+    fn elements(&self, m: &Model, x: &[f64], w: &Workspace<f64>, book: &mut impl FnMut(Account, f64)) {
+        for (joint, law) in self.damped.iter().map(|&i| &m.bushings[i]) {
+            let joint = &w.joints[*joint];
+            book(Suspension, law.dissipated(joint.rate, joint.spin));
+        }
+        for e in &m.maxwells {
+            book(Suspension, e.law.dissipated(x[e.state]));
+        }
+        for e in &m.actuators {
+            book(Actuators, x[e.state] * w.joints[e.joint].rate.x());
+        }
+    }
 }
 
 /// Electrical power, copper, friction of the rotors, damping of the shafts.
@@ -169,20 +185,6 @@ fn drives(m: &Model, x: &[f64], inputs: &[f64], w: &Workspace<f64>, book: &mut i
         book(CopperArmature, drive.law.copper(current));
         book(MotorFriction, drive.law.friction(motor_speed));
         book(Transmission, drive.law.transmission(motor_speed, wheel_speed));
-    }
-}
-
-/// Dampers, and what the actuators do on their way.
-fn elements(m: &Model, x: &[f64], w: &Workspace<f64>, book: &mut impl FnMut(Account, f64)) {
-    for (joint, law) in &m.bushings {
-        let joint = &w.joints[*joint];
-        book(Suspension, law.dissipated(joint.rate, joint.spin));
-    }
-    for e in &m.maxwells {
-        book(Suspension, e.law.dissipated(x[e.state]));
-    }
-    for e in &m.actuators {
-        book(Actuators, x[e.state] * w.joints[e.joint].rate.x());
     }
 }
 

@@ -41,7 +41,8 @@ pub struct WheelState<S> {
     pub creep_x: S,
     pub creep_y: S,
     /// Powers on the wheel's contact \[W\]: lost to friction and to the damping of the approach, taken by the elastic
-    /// normal force as it is pressed in, and given by a rail that moves.
+    /// normal force as it is pressed in, and given by a rail that moves or
+    /// climbs a cant ramp: in the model forces stay in the cross-section, so that the ramp itself lifts the wheel.
     pub friction_power: S,
     pub damping_power: S,
     pub elastic_power: S,
@@ -95,7 +96,9 @@ fn wheel_on_rail<S: Scalar>(
     let shift =
         (y * cos_rail + z * sin_rail) * sign - sin_roll * (sign * wheel.radius) - cos_rail * wheel.half_tape_distance;
     let depth = z * cos_rail - (y - sign * wheel.half_tape_distance) * sin_rail + cos_roll * wheel.radius;
-    let rail_rate_T = Vec3::new(S::zero(), rail[2], rail[3]);
+    // a cant ramp lifts the rail under the travelling wheel
+    let climb = body.w_track_T.x() * (wheel.half_tape_distance * sign);
+    let rail_rate_T = Vec3::new(S::zero(), rail[2], rail[3] + climb);
     let roll = sin_roll * sign;
     let yaw = body.yaw * sign;
     let patches =

@@ -58,6 +58,11 @@ impl Bushing {
         })
     }
 
+    /// Whether it turns anything to heat.
+    pub fn damps(&self) -> bool {
+        self.damping.iter().chain(&self.rotational_damping).any(|&c| c != 0.0)
+    }
+
     /// Whether the three rotations have any law.
     pub fn turns(&self) -> bool {
         self.rotational_stiffness.iter().chain(&self.rotational_damping).any(|&k| k != 0.0)
