@@ -23,6 +23,9 @@ wheelset that bounces on its contact springs near 180 Hz; this project's choice.
 HOLD_FREQUENCY = 0.1
 """Of the ideal force that holds the speed [Hz]: slow against everything that the study looks at; critically damped."""
 
+IMPLICIT_RATE = 20e3
+"""Speed below which steps are implicit, over the step [m/s2]: explicit ones are stable above 17e3 or so."""
+
 Spec = dict[str, Any]
 Point = list[float]
 
@@ -79,6 +82,7 @@ def lower(scenario: Scenario) -> Spec:
             "law": scenario.creep_law,
             "elements": list(scenario.creep_elements),
             "contact_dissipation": CONTACT_DISSIPATION,
+            "stick": scenario.stick,
             **scenario.creep_options.spec(scenario.creep_law),
         },
         "bushings": [*_primary(vehicle, wheels), *_secondary(vehicle)],
@@ -92,6 +96,7 @@ def lower(scenario: Scenario) -> Spec:
         "run": {
             "duration": scenario.end_time,
             "step": scenario.step,
+            "implicit_below": IMPLICIT_RATE * scenario.step,
             "record_interval": scenario.record_interval,
             "equilibrium": True,
             "kicks": [],

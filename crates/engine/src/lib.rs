@@ -20,6 +20,8 @@ pub mod rates;
 pub mod simulate;
 pub mod spec;
 pub mod steady;
+pub mod stepper;
+pub mod stiff;
 pub mod suspension;
 pub mod tables;
 pub mod traction;

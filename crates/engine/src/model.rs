@@ -9,6 +9,7 @@ use klingel_physics::contact::{ContactTable, CreepForce};
 use klingel_physics::drives::{self, Actuator, RunningResistance};
 use klingel_physics::elements::{Bushing, Maxwell, Stop};
 use klingel_physics::track::{Adhesion, Alignment, TrackFrame, UniformTrack};
+use std::ops::Range;
 use std::sync::Arc;
 
 #[derive(Clone, Debug)]
@@ -39,6 +40,8 @@ pub struct Model {
     pub creep: CreepForce,
     /// How friction falls with the slip velocity, if it does.
     pub falling_friction: Option<FallingFriction>,
+    /// Speed v0 that keeps creepages finite at standstill \[m/s\].
+    pub creep_floor: f64,
     /// Contact damping over elastic force and approach speed \[s/m\].
     pub contact_dissipation: f64,
     /// Decay rate of each state that the integrator takes exactly \[1/s\]; zero for most.
@@ -153,6 +156,8 @@ pub struct Wheel {
     pub radius: f64,
     /// Point on the axle line in the tape-circle plane, from the centre of mass, body frame \[m\].
     pub centre: [f64; 3],
+    /// First of its transient creepages, along and across, where wheels stick.
+    pub stick: Option<usize>,
 }
 
 #[derive(Clone, Debug)]
@@ -182,6 +187,13 @@ pub struct Hold {
     pub state: usize,
 }
 
+impl Body {
+    /// Places of its velocities: vx, vy, vz in T and wx, (wy,) wz in B.
+    pub fn velocities(&self) -> Range<usize> {
+        if self.pitches { self.state + 6..self.state + 12 } else { self.state + 5..self.state + 10 }
+    }
+}
+
 impl Drive {
     /// What the inverter puts out \[V\]: the commanded voltage within +-VaMax.
     #[inline]
@@ -193,6 +205,11 @@ impl Drive {
 impl Model {
     pub fn state_count(&self) -> usize {
         self.state_names.len()
+    }
+
+    /// Speed of the reference body \[m/s\].
+    pub fn reference_speed(&self, x: &[f64]) -> f64 {
+        x[self.bodies[self.reference()].velocities().start]
     }
 
     /// The body whose arc length and speed count for the vehicle's: that of the speed hold, else the first.

@@ -79,7 +79,7 @@ pub fn rates<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>, 
         let frame = |s: S| m.track.at(s, reference, [inputs[track], inputs[track + 1]]);
         *state = motion(frame, body, x, dx);
     }
-    wheels(m, x, inputs, w)?;
+    wheels(m, x, inputs, w, dx)?;
     suspension::joints(m, w);
     suspension::elements(m, x, inputs, w, dx);
     suspension::apply(m, w);

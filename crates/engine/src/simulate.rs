@@ -5,15 +5,15 @@ use crate::channels;
 use crate::compile::compile;
 use crate::control::Controller;
 use crate::energy::Energy;
-use crate::equilibrium::{design_state, equilibrium};
+use crate::equilibrium::{design_state, equilibrium, start};
 use crate::error::{EngineError, Fault};
 use crate::excitation::Excitation;
-use crate::integrate::Etdrk4;
 use crate::model::Model;
 use crate::pass::Pass;
 use crate::rates::{Workspace, rates};
 use crate::spec::Spec;
-use crate::steady::{Steady, steady};
+use crate::steady::Steady;
+use crate::stepper::Stepper;
 use crate::wiring::Wiring;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -75,7 +75,7 @@ pub fn simulate(spec: &Spec, progress: &Progress) -> Result<TimeSeries, EngineEr
 fn begin(m: &Model, wired: Option<&mut Wired>) -> Result<(Vec<f64>, Vec<f64>), EngineError> {
     if m.run.settled {
         let wiring = wired.as_ref().map(|w| Wiring::of(m, w.controller.diagram().clone())).transpose()?;
-        let Steady { x, inputs, integrals, .. } = steady(m, wiring.as_ref(), None)?;
+        let Steady { x, inputs, integrals, .. } = start(m, wiring.as_ref())?;
         if let Some(wired) = wired {
             // settled before anything excites the vehicle, so that the first sample is a step like every other
             let mut pass = Pass::<f64>::new(m, None);
@@ -148,7 +148,7 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
         poles.resize(x.len(), 0.0);
     }
     let mut first = vec![0.0; x.len()];
-    let mut scheme = Etdrk4::new(step, &poles);
+    let mut stepper = Stepper::new(m, &poles)?;
     for k in 0..=steps {
         let time = k as f64 * step;
         let sampled = wired.as_ref().is_some_and(|c| k % c.every == 0);
@@ -183,15 +183,18 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
             if k == steps {
                 return Ok(());
             }
-            scheme.advance(&mut x, &first, |later, at, f| {
+            if sampled || wired.is_none() {
+                stepper.choose(m, &x);
+            }
+            stepper.advance(m, &mut x, &first, &mut inputs, |later, at, inputs, f| {
                 if moves {
-                    excitation.apply(k, later / step, &held, &mut inputs);
+                    excitation.apply(k, later / step, &held, inputs);
                 }
-                rates_and_powers(m, energy.as_ref(), at, &inputs, &mut w, f)
+                rates_and_powers(m, energy.as_ref(), at, inputs, &mut w, f)
             })?;
             finite(m, &x)
         });
-        series.evaluations += 4;
+        series.evaluations += stepper.evaluations();
         if let Err(fault) = advanced {
             series.fault = Some((time, fault));
             break;

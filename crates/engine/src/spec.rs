@@ -217,6 +217,9 @@ pub struct CreepSpec {
     /// Every law: A and B \[s/m\] of the friction that falls with the slip velocity, mu ((1 - A) exp(-B w) + A).
     #[serde(default)]
     pub falling: Option<[f64; 2]>,
+    /// Creepages need way to build up, so that wheels stick while they stand; two more states a wheel.
+    #[serde(default)]
+    pub stick: bool,
 }
 
 impl Default for CreepSpec {
@@ -229,6 +232,7 @@ impl Default for CreepSpec {
             slope: None,
             reduction: None,
             falling: None,
+            stick: false,
         }
     }
 }
@@ -404,6 +408,10 @@ pub struct RunSpec {
     pub duration: f64,
     /// Integration step; the controllers' sample time is a multiple of it \[s\].
     pub step: f64,
+    /// Below this speed steps are linearly implicit, as creep damping is too stiff for explicit ones; with stick they are
+    /// at every speed \[m/s\].
+    #[serde(default)]
+    pub implicit_below: f64,
     /// Of the recorded channels, a multiple of the step \[s\].
     pub record_interval: f64,
     /// Start from the static equilibrium at `speed` (else from the design position).

@@ -7,12 +7,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from klingel.drives.motor import field_current, torque_constant, wheel_torque_max
+from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
 from klingel.drives.resistance import running_resistance
 from klingel.errors import InputError
 
 if TYPE_CHECKING:
-    from klingel.vehicle import Vehicle
+    from klingel.vehicle import Drive, Vehicle
 
 WHEELS = 8
 
@@ -53,8 +53,10 @@ def operating_point(vehicle: Vehicle, speed: float) -> OperatingPoint:
     drive = vehicle.drive
     if drive is None:
         raise InputError.single("drive", None, "is missing", remedy=f"{vehicle.name} is hauled; take a driven vehicle")
-    if speed <= 0.0:
-        raise InputError.single("speed", speed, "must be positive [m/s]", remedy="give the running speed")
+    if not speed >= 0.0:
+        raise InputError.single("speed", speed, "must not be negative [m/s]", remedy="give the running speed")
+    if speed == 0.0:
+        return _at_rest(drive)
     radius = vehicle.geometry.wheel_radius
     resistance = running_resistance(vehicle)(speed) / WHEELS
     torque = resistance * radius
@@ -80,6 +82,23 @@ def operating_point(vehicle: Vehicle, speed: float) -> OperatingPoint:
         torque_constant=kt,
         armature_voltage=drive.traction_share * drive.armature_voltage_max,
         wheel_torque_max=wheel_torque_max(drive, motor_speed),
+    )
+
+
+def _at_rest(drive: Drive) -> OperatingPoint:
+    """Standing without torque: full field, no voltage."""
+    current = drive.field_current_rated
+    return OperatingPoint(
+        speed=0.0,
+        resistance=0.0,
+        wheel_torque=0.0,
+        motor_speed=0.0,
+        field_current=current,
+        field_current_normalised=1.0,
+        armature_current=0.0,
+        torque_constant=torque_constant(drive, current),
+        armature_voltage=0.0,
+        wheel_torque_max=wheel_torque(drive, current, 0.0),
     )
 
 

@@ -49,8 +49,9 @@ class Scenario:
     equally fast; creep_law with creep_elements (along, across) for FASTSIM and its creep_options; wheel: profile of all
     wheels, None for the vehicle's; rail: its profile or the name of a standard one; rail_inclination (slope, positive
     leans inwards), gauge;
-    step: of the integrator; record_interval: of the results; duration: None runs to the end of the track;
-    energy: book it (channels `energy.*`, see `klingel.assess.energy`).
+    stick: creepages need way to build up, so that standing wheels stick instead of creeping;
+    step: of the integrator; record_interval: of the results; duration: None runs to the end of the track, a vehicle that
+    starts from rest needs one; energy: book it (channels `energy.*`, see `klingel.assess.energy`).
     Errors: InputError with every problem.
 
     >>> from klingel import library
@@ -70,6 +71,7 @@ class Scenario:
     creep_law: CreepLaw
     creep_elements: tuple[int, int]
     creep_options: CreepOptions
+    stick: bool
     wheel: Profile | None
     rail: str | Profile
     rail_inclination: float
@@ -93,6 +95,7 @@ class Scenario:
         creep_law: CreepLaw = "table",
         creep_elements: tuple[int, int] = (10, 10),
         creep_options: CreepOptions = DRY_AND_CLEAN,
+        stick: bool = False,
         wheel: Profile | None = None,
         rail: str | Profile = "60E1",
         rail_inclination: Quantity = 0.025,
@@ -114,6 +117,7 @@ class Scenario:
             "creep_law": creep_law,
             "creep_elements": _as_tuple(creep_elements),
             "creep_options": creep_options,
+            "stick": stick,
             "wheel": wheel,
             "rail": rail,
             "rail_inclination": to_si(rail_inclination, "1", key="rail_inclination"),
@@ -167,11 +171,15 @@ def _is_grid(elements: object) -> bool:
 
 
 def _problems(scenario: Scenario) -> Iterator[Problem]:
-    positive = {"speed": "m/s", "friction": "1", "gauge": "m", "step": "s", "record_interval": "s", "duration": "s"}
+    positive = {"friction": "1", "gauge": "m", "step": "s", "record_interval": "s", "duration": "s"}
     for key, unit in positive.items():
         value = getattr(scenario, key)
         if value is not None and not value > 0.0:
             yield Problem(key, value, f"must be positive [{unit}]", "give a value above zero")
+    if not scenario.speed >= 0.0:
+        yield Problem("speed", scenario.speed, "must not be negative [m/s]", "give a speed, or 0 to start from rest")
+    if not isinstance(scenario.stick, bool):
+        yield Problem("stick", scenario.stick, "is no yes or no", "give True or False")
     if scenario.friction > 1.5:
         yield Problem("friction", scenario.friction, "is no coefficient of friction", "give 0.05 to 0.6")
     yield from _along_track_problems(scenario)
@@ -252,12 +260,14 @@ def _nearest_step(step: float, sample_time: float, interval: float) -> float:
 
 
 def _run_problems(scenario: Scenario) -> Iterator[Problem]:
-    if not scenario.speed > 0.0:
+    if not scenario.speed >= 0.0:
         return
     room = scenario.track.length - 2.0 * scenario.start
     if room <= 0.0:
         remedy = f"give more than {2.0 * scenario.start:.1f} m, the vehicle's length included"
         yield Problem("track", f"{scenario.track.length:g} m", "is too short for the vehicle", remedy)
+    elif scenario.duration is None and scenario.speed == 0.0:
+        yield Problem("duration", None, "is missing", "say how long a vehicle that starts from rest shall run [s]")
     elif scenario.duration is not None and scenario.duration * scenario.speed > room:
         remedy = f"give at most {room / scenario.speed:.2f} s, or lengthen the track"
         yield Problem("duration", scenario.duration, "runs over the end of the track [s]", remedy)

@@ -1,5 +1,5 @@
 //! Spec to model: names become indices, design points become body-fixed points, numbers are checked.
-//! Order of the states: bodies, rotors, dampers' forces, actuators, drives, speed hold.
+//! Order of the states: bodies, rotors, dampers' forces, actuators, drives, speed hold, stick of the wheels.
 
 mod elements;
 mod wheels;
@@ -12,6 +12,9 @@ use klingel_physics::contact::Material;
 use klingel_physics::track::{Adhesion, Alignment, Segment, UniformTrack};
 
 pub use wheels::{named_profile, pair_geometry, prepare};
+
+/// Speed v0 that keeps creepages finite at standstill \[m/s\].
+const CREEP_FLOOR: f64 = 0.1;
 
 /// Compiles a spec.
 ///
@@ -65,6 +68,7 @@ pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
         adhesion,
         creep,
         falling_friction,
+        creep_floor: CREEP_FLOOR,
         contact_dissipation: spec.creep.contact_dissipation,
         poles: states.poles,
         state_names: states.names,
@@ -122,6 +126,9 @@ fn check_run(spec: &Spec, track: &Course) -> Result<(), EngineError> {
     let RunSpec { duration, step, record_interval, .. } = spec.run;
     positive("run", "duration", duration)?;
     positive("run", "step", step)?;
+    if !(spec.run.implicit_below >= 0.0) {
+        return Err(value("run.implicit_below", spec.run.implicit_below, "give a speed, or 0 for explicit steps only"));
+    }
     if !whole(record_interval / step) {
         return Err(value("run.record_interval", record_interval, "make it a multiple of the step"));
     }

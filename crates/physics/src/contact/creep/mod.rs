@@ -12,6 +12,7 @@ mod linear;
 mod options;
 mod polach;
 mod shen;
+mod stick;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -21,6 +22,7 @@ pub use exact::{Exact, ExactSolution, exact_force, exact_forces};
 pub use fastsim::MOST_ELEMENTS;
 pub use kalker::Kalker;
 pub use options::{CreepOptions, FallingFriction, PolachReduction, SlopeReduction};
+pub use stick::{relaxation_length, stick_rates};
 pub use table::{CREEP_TABLE, CreepTable, Maker, Provenance};
 
 use super::Material;
