@@ -111,6 +111,7 @@ def lower(scenario: Scenario) -> Spec:
             "record_interval": scenario.record_interval,
             "equilibrium": True,
             "kicks": [],
+            "energy": scenario.energy,
         },
     }
 

@@ -4,6 +4,7 @@
 pub mod channels;
 pub mod compile;
 pub mod control;
+pub mod energy;
 pub mod equilibrium;
 pub mod error;
 pub mod excitation;

@@ -4,6 +4,7 @@
 use crate::channels;
 use crate::compile::compile;
 use crate::control::Controller;
+use crate::energy::Energy;
 use crate::equilibrium::{design_state, equilibrium, start};
 use crate::error::{EngineError, Fault};
 use crate::excitation::Excitation;
@@ -109,11 +110,15 @@ struct Wired {
 /// No equilibrium, a controller wired to unknown channels, or a cancelled run.
 pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Result<TimeSeries, EngineError> {
     let start = cpu_time::ThreadTime::now();
-    let channels = channels::list(m);
+    let mut channels = channels::list(m);
     let mut wired = controller.map(|c| Wired::new(m, c)).transpose()?;
     let (mut x, mut held) = begin(m, wired.as_mut())?;
     let probes = wired.as_ref().map_or(0, |w| w.controller.probe_channels().len());
-    let width = channels.len() + probes;
+    let mut energy = m.run.energy.then(|| Energy::new(m));
+    let (own, states) = (channels.len(), x.len());
+    channels.extend(energy.iter().flat_map(Energy::list));
+    let booked = channels.len();
+    let width = booked + probes;
 
     let step = m.run.step;
     let steps = (m.run.duration / step).round() as usize;
@@ -135,10 +140,16 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
     let moves = excitation.moves();
     let mut inputs = held.clone();
     let mut w = Workspace::<f64>::new(m);
-    let mut first = vec![0.0; x.len()];
     let mut row = vec![0.0; width];
-    let mut stepper = Stepper::new(m)?;
     kick(m, &mut x)?;
+    // the accounts are states behind those of the model
+    let mut poles = m.poles.clone();
+    if energy.is_some() {
+        x.resize(states + Energy::STATES, 0.0);
+        poles.resize(x.len(), 0.0);
+    }
+    let mut first = vec![0.0; x.len()];
+    let mut stepper = Stepper::new(m, &poles)?;
     for k in 0..=steps {
         let time = k as f64 * step;
         let sampled = wired.as_ref().is_some_and(|c| k % c.every == 0);
@@ -146,9 +157,15 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
             c.drive(&mut held);
         }
         excitation.apply(k, 0.0, &held, &mut inputs);
-        let evaluated = rates(m, &x, &inputs, &mut w, &mut first).and_then(|()| {
+        let evaluated = rates_and_powers(m, energy.as_ref(), &x, &inputs, &mut w, &mut first).and_then(|()| {
+            if let (Some(energy), 0) = (&mut energy, k) {
+                energy.begin(m, &x, &w);
+            }
             if k % record_every == 0 || sampled {
                 channels::fill(m, &x, &inputs, &w, &mut row);
+            }
+            if let (Some(energy), true) = (&energy, k % record_every == 0) {
+                energy.fill(m, &x, &w, &x[states..], &mut row[own..booked]);
             }
             match &mut wired {
                 Some(c) if sampled => c.sample(&mut row, k == 0 && !c.settled),
@@ -174,7 +191,7 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
                 if moves {
                     excitation.apply(k, later / step, &held, inputs);
                 }
-                rates(m, at, inputs, &mut w, f)
+                rates_and_powers(m, energy.as_ref(), at, inputs, &mut w, f)
             })?;
             finite(m, &x).and_then(|()| on_track(m, &x))
         });
@@ -222,6 +239,23 @@ impl Wired {
     }
 }
 
+/// Rates of the model's states, and of the accounts behind them.
+fn rates_and_powers(
+    m: &Model,
+    energy: Option<&Energy>,
+    x: &[f64],
+    inputs: &[f64],
+    w: &mut Workspace<f64>,
+    dx: &mut [f64],
+) -> Result<(), Fault> {
+    let (dx, powers) = dx.split_at_mut(m.state_count());
+    rates(m, x, inputs, w, dx)?;
+    if let Some(energy) = energy {
+        energy.powers(m, x, inputs, w, dx, powers);
+    }
+    Ok(())
+}
+
 fn kick(m: &Model, x: &mut [f64]) -> Result<(), EngineError> {
     for kick in &m.run.kicks {
         let body = m.bodies.iter().find(|b| b.name == kick.body).ok_or_else(|| EngineError::Unknown {
@@ -257,7 +291,7 @@ fn on_track(m: &Model, x: &[f64]) -> Result<(), Fault> {
 }
 
 fn finite(m: &Model, x: &[f64]) -> Result<(), Fault> {
-    match x.iter().position(|v| !v.is_finite()) {
+    match x[..m.state_count()].iter().position(|v| !v.is_finite()) {
         Some(i) => Err(Fault::Unstable { state: m.state_names[i].clone() }),
         None => Ok(()),
     }

@@ -513,6 +513,9 @@ pub struct RunSpec {
     /// Extra velocity of a body at the start: lateral \[m/s\] and yaw rate \[rad/s\], for stability runs and tests.
     #[serde(default)]
     pub kicks: Vec<KickSpec>,
+    /// Whether the energies are booked and become channels.
+    #[serde(default)]
+    pub energy: bool,
     /// What is added to inputs of the model in the course of the run.
     #[serde(default)]
     pub excitations: Vec<ExcitationSpec>,

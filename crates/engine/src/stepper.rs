@@ -24,18 +24,19 @@ struct Implicit {
 }
 
 impl Stepper {
+    /// `poles`: decay rates of the states \[1/s\], those of the model first.
+    ///
     /// # Errors
     /// A body with more wheels than implicit steps take.
-    pub fn new(m: &Model) -> Result<Self, EngineError> {
+    pub fn new(m: &Model, poles: &[f64]) -> Result<Self, EngineError> {
         let sticks = m.wheels.iter().any(|w| w.stick.is_some());
         let below = if sticks { f64::INFINITY } else { m.run.implicit_below };
         let implicit = || {
-            let (scheme, matrix) =
-                (Rosenbrock::new(m.run.step, m.state_count()), Blocks::new(stiff::blocks(m), &m.poles));
+            let (scheme, matrix) = (Rosenbrock::new(m.run.step, poles.len()), Blocks::new(stiff::blocks(m), poles));
             Ok::<_, EngineError>(Implicit { below, scheme, stiff: Stiff::new(m)?, matrix })
         };
         let implicit = (below > 0.0).then(implicit).transpose()?;
-        Ok(Self { explicit: Etdrk4::new(m.run.step, &m.poles), implicit, is_implicit: false })
+        Ok(Self { explicit: Etdrk4::new(m.run.step, poles), implicit, is_implicit: false })
     }
 
     /// Chooses the scheme of the steps to come by the speed of the reference body.

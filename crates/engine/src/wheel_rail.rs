@@ -38,6 +38,13 @@ pub struct WheelState<S> {
     /// Creepages along and across, means over the patches weighted with their loads \[-\].
     pub creep_x: S,
     pub creep_y: S,
+    /// Powers on the wheel's contact \[W\]: lost to friction and to the damping of the approach, taken by the elastic
+    /// normal force as it is pressed in, and given by a rail that moves or climbs a cant ramp: in the model forces stay in
+    /// the cross-section, so that the ramp itself lifts the wheel.
+    pub friction_power: S,
+    pub damping_power: S,
+    pub elastic_power: S,
+    pub rail_power: S,
     /// Load of the patches so slender that the creep table does not hold their a/b \[N\].
     pub slender_force: S,
 }
@@ -89,7 +96,9 @@ fn wheel_on_rail<S: Scalar>(
     let shift =
         (y * cos_rail + z * sin_rail) * sign - sin_roll * (sign * wheel.radius) - cos_rail * wheel.half_tape_distance;
     let depth = z * cos_rail - (y - sign * wheel.half_tape_distance) * sin_rail + cos_roll * wheel.radius;
-    let rail_rate_T = Vec3::new(S::zero(), rail[2], rail[3]);
+    // a cant ramp lifts the rail under the travelling wheel
+    let climb = body.w_track_T.x() * (wheel.half_tape_distance * sign);
+    let rail_rate_T = Vec3::new(S::zero(), rail[2], rail[3] + climb);
     let roll = sin_roll * sign;
     let yaw = body.yaw * sign;
     let patches =
@@ -110,12 +119,13 @@ fn wheel_on_rail<S: Scalar>(
         let into_rail = Vec3::new(S::zero(), sin_T * sign, cos_T);
         let w_T = body.R_TF.apply(w_F);
 
-        let damping = ((slip_T - rail_rate_T).dot(into_rail) * m.contact_dissipation + 1.0).positive();
+        let approach = (slip_T - rail_rate_T).dot(into_rail);
+        let damping = (approach * m.contact_dissipation + 1.0).positive();
         let normal = patch.normal_force * damping;
         let mean_speed = (v_T.x() + spin * patch.radius) * 0.5;
         let v_ref = (mean_speed.square() + m.creep_floor * m.creep_floor).sqrt();
         let creepages = [slip_T.x() / v_ref, slip_T.dot(across) / v_ref, w_T.dot(into_rail) / v_ref];
-        Touch { point_F, point_T, across, into_rail, normal, mean_speed, v_ref, creepages }
+        Touch { point_F, point_T, across, into_rail, approach, normal, mean_speed, v_ref, creepages }
     };
     let lag = wheel.stick.map(|first| lag(m.creep_floor, patches.iter().map(|p| (p, touch(p))), first, x, dx));
 
@@ -123,7 +133,8 @@ fn wheel_on_rail<S: Scalar>(
     let mut moment_T = Vec3::zero();
     for (zone, patch) in patches.iter().enumerate() {
         if patch.active {
-            let Touch { point_F, point_T, across, into_rail, normal, mean_speed, v_ref, creepages } = touch(patch);
+            let Touch { point_F, point_T, across, into_rail, approach, normal, mean_speed, v_ref, creepages } =
+                touch(patch);
             let [xi, eta, phi] = creepages;
             let friction = match &m.falling_friction {
                 Some(falling) => falling.at_creepage(standing_friction, v_ref, xi, eta),
@@ -152,6 +163,10 @@ fn wheel_on_rail<S: Scalar>(
             state.normal[zone] = normal;
             state.t_gamma += (fx * xi).abs() + (fy * eta).abs();
             state.spin_work += (mz * phi).abs();
+            state.friction_power -= (fx * xi + fy * eta + mz * phi) * v_ref;
+            state.damping_power += (normal - patch.normal_force) * approach;
+            state.elastic_power += patch.normal_force * approach;
+            state.rail_power -= normal * rail_rate_T.dot(into_rail);
             state.creep_x += normal * xi;
             state.creep_y += normal * eta;
             report_angle(&mut state, patch.angle, normal);
@@ -168,12 +183,14 @@ fn wheel_on_rail<S: Scalar>(
     Ok((state, moment_T))
 }
 
-/// One patch as it touches its rail: place in F and T, directions, load \[N\], speeds \[m/s\] and quasi-steady creepages.
+/// One patch as it touches its rail: place in F and T, directions, speed of approach \[m/s\], load \[N\], speeds \[m/s\]
+/// and quasi-steady creepages.
 struct Touch<S> {
     point_F: Vec3<S>,
     point_T: Vec3<S>,
     across: Vec3<S>,
     into_rail: Vec3<S>,
+    approach: S,
     normal: S,
     mean_speed: S,
     v_ref: S,

@@ -1,12 +1,21 @@
 """Traction drives: running resistance, operating point of the motors, transfer functions of Eqs (12) to (29).
 Equation numbers are those of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 207-217."""
 
-from klingel.drives.demand import Demand, Resistance, torque_demand
+from klingel.drives.demand import Demand, torque_demand
+from klingel.drives.formulas import (
+    DavisCoefficients,
+    Resistance,
+    curve_resistance,
+    polynomial,
+    sauthoff,
+    sncf_general,
+    strahl,
+)
 from klingel.drives.induction import InductionPoint, induction_point, induction_torque_max
 from klingel.drives.limits import OperatingLimit, operating_limit, starting_point, traction_torque_max
 from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
 from klingel.drives.operating import OperatingPoint, base_speed, operating_point, operating_table
-from klingel.drives.resistance import DavisCoefficients, running_resistance, sncf_general
+from klingel.drives.resistance import running_resistance
 from klingel.drives.transfer import DriveTransfer, Rational, TwoInputs, WheelPair
 
 __all__ = [
@@ -21,15 +30,19 @@ __all__ = [
     "TwoInputs",
     "WheelPair",
     "base_speed",
+    "curve_resistance",
     "field_current",
     "induction_point",
     "induction_torque_max",
     "operating_limit",
     "operating_point",
     "operating_table",
+    "polynomial",
     "running_resistance",
+    "sauthoff",
     "sncf_general",
     "starting_point",
+    "strahl",
     "torque_constant",
     "torque_demand",
     "traction_torque_max",

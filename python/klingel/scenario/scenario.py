@@ -54,7 +54,8 @@ class Scenario:
     leans inwards), gauge;
     stick: creepages need way to build up, so that standing wheels stick instead of creeping;
     step: of the integrator; record_interval: of the results; duration: None runs to the end of the track; a vehicle
-    that starts from rest needs one, with a traction loop it is that of the commands.
+    that starts from rest needs one, with a traction loop it is that of the commands; energy: book it (channels
+    `energy.*`, see `klingel.assess.energy`).
     Errors: InputError with every problem.
 
     >>> from klingel import library
@@ -82,6 +83,7 @@ class Scenario:
     step: float
     record_interval: float
     duration: float | None
+    energy: bool
 
     def __init__(
         self,
@@ -105,6 +107,7 @@ class Scenario:
         step: Quantity = "0.5 ms",
         record_interval: Quantity = "1 ms",
         duration: Quantity | None = None,
+        energy: bool = True,
     ) -> None:
         values: dict[str, Any] = {
             "vehicle": vehicle,
@@ -126,6 +129,7 @@ class Scenario:
             "step": to_si(step, "s", key="step"),
             "record_interval": to_si(record_interval, "s", key="record_interval"),
             "duration": None if duration is None else to_si(duration, "s", key="duration"),
+            "energy": energy,
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -206,6 +210,8 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
         elif value not in known:
             yield Problem(key, value, "is not known", nearest(value, known))
     yield from _profile_problems(scenario)
+    if type(scenario.energy) is not bool:
+        yield Problem("energy", scenario.energy, "is neither true nor false", "give true or false")
     if not isinstance(scenario.creep_options, CreepOptions):
         yield Problem("creep_options", scenario.creep_options, "are none", "give klingel.contact.CreepOptions")
     if not _is_grid(scenario.creep_elements):

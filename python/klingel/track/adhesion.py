@@ -92,7 +92,7 @@ class Adhesion:
         return Adhesion(base=self.base, patches=patches, transition=self.transition)
 
     def _at(self, s: ArrayLike, rail: str) -> NDArray[np.float64]:
-        return np.asarray(np.interp(s, *self._corners(rail)), dtype=np.float64)
+        return np.asarray(np.interp(np.asarray(s, dtype=np.float64), *self._corners(rail)), dtype=np.float64)
 
     def _corners(self, rail: str) -> tuple[list[float], list[float]]:
         own = sorted((p for p in self.patches if p.rail in ("both", rail)), key=lambda p: p.start)
@@ -113,7 +113,7 @@ def _patch(i: int, given: Patch | Sequence[Quantity]) -> Patch:
     key = f"patches.{i}"
     if isinstance(given, Patch):
         return given
-    if isinstance(given, str) or not isinstance(given, Sequence) or len(given) not in (3, 4):
+    if isinstance(given, str) or len(given) not in (3, 4):
         raise InputError.single(key, given, "is no patch", remedy="give (start, end, friction) or a Patch")
     rail = given[3] if len(given) == 4 else "both"
     if rail not in get_args(Rail):

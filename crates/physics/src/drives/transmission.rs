@@ -67,17 +67,17 @@ impl Transmission {
         }
     }
 
-    /// Energy in the rotor and in the shaft \[J\], the body that carries them at rest.
+    /// Energy in the rotor at its absolute speed \[rad/s\], and in the twisted shaft \[J\].
     #[inline(always)]
-    pub fn stored<S: Scalar>(&self, state: &TransmissionState<S>) -> S {
-        (state.motor_speed.square() * self.rotor_inertia + state.twist.square() * self.stiffness) * 0.5
+    pub fn stored<S: Scalar>(&self, absolute_speed: S, twist: S) -> [S; 2] {
+        [absolute_speed.square() * (0.5 * self.rotor_inertia), twist.square() * (0.5 * self.stiffness)]
     }
 
-    /// Power lost in bearings and shaft \[W\].
+    /// Power lost in the rotor's bearings, and in the shaft \[W\].
     #[inline(always)]
-    pub fn dissipated<S: Scalar>(&self, state: &TransmissionState<S>, wheel_speed: S) -> S {
-        state.motor_speed.square() * self.rotor_damping
-            + self.twist_rate(state.motor_speed, wheel_speed).square() * self.damping
+    pub fn dissipated<S: Scalar>(&self, motor_speed: S, wheel_speed: S) -> [S; 2] {
+        let slip = self.twist_rate(motor_speed, wheel_speed);
+        [motor_speed.square() * self.rotor_damping, slip.square() * self.damping]
     }
 
     /// The state and the air-gap torque \[N m\] that hold a wheel speed \[rad/s\] and a shaft torque \[N m\].
@@ -132,14 +132,12 @@ mod tests {
         let state = TransmissionState { motor_speed: 320.0, twist: 3e-4 };
         let (air_gap_torque, wheel_speed) = (110.0, 106.0);
         let r = LAW.rates(&state, air_gap_torque, wheel_speed);
-        let growing = |h: f64| {
-            LAW.stored(&TransmissionState {
-                motor_speed: state.motor_speed + h * r.motor_speed,
-                twist: state.twist + h * r.twist,
-            })
+        let growing = |h: f64| -> f64 {
+            LAW.stored(state.motor_speed + h * r.motor_speed, state.twist + h * r.twist).iter().sum()
         };
         let stored = (growing(1e-3) - growing(-1e-3)) / 2e-3;
-        let out = LAW.shaft_torque(&state, wheel_speed) * wheel_speed + LAW.dissipated(&state, wheel_speed);
+        let lost: f64 = LAW.dissipated(state.motor_speed, wheel_speed).iter().sum();
+        let out = LAW.shaft_torque(&state, wheel_speed) * wheel_speed + lost;
         let input = air_gap_torque * state.motor_speed;
         assert!((input - out - stored).abs() < 1e-9 * input);
     }

@@ -141,6 +141,11 @@ impl Alignment {
         self.length
     }
 
+    /// Whether any piece has a grade.
+    pub fn climbs(&self) -> bool {
+        self.pieces.iter().any(|p| p.segment.grade != [0.0; 2])
+    }
+
     /// The frame at arc length `s`; beyond the ends the centre line goes on straight, with the last cant and grade.
     pub fn at<S: Scalar>(&self, s: S) -> TrackFrame<S> {
         let [x, y, heading, curvature, cant_angle, twist, grade] = S::lift_n([s], |[s]| self.evaluate(s));
