@@ -8,7 +8,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from klingel.drives.demand import Resistance, torque_demand
+from klingel.drives.demand import torque_demand
+from klingel.drives.formulas import Resistance
 from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
 from klingel.errors import InputError
 
