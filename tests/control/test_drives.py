@@ -82,10 +82,18 @@ def test_largest_torque_of_eq_5() -> None:
         field_current(DRIVE, 1.001 * limit, POINT.motor_speed)
 
 
-@pytest.mark.parametrize(("speed", "word"), [(0.0, "must be positive"), (25.0, "above the base speed")])
-def test_speeds_without_an_operating_point(speed: float, word: str) -> None:
-    with pytest.raises(InputError, match=word):
-        operating_point(VEHICLE, speed)
+def test_below_the_base_speed_the_field_is_full_and_the_voltage_what_the_torque_takes() -> None:
+    slow, standing = operating_point(VEHICLE, 10.0), operating_point(VEHICLE, 0.0)
+    assert slow.field_current == DRIVE.field_current_rated == standing.field_current
+    given = DRIVE.emf_constant * slow.field_current * slow.armature_current
+    assert given * 3.0 == pytest.approx(slow.wheel_torque + DRIVE.rotor_damping * slow.motor_speed * 3.0)
+    assert 0.0 < slow.armature_voltage < 0.4 * DRIVE.armature_voltage_max
+    assert standing.armature_voltage == standing.wheel_torque == 0.0
+
+
+def test_there_is_no_operating_point_backwards_or_without_drives() -> None:
+    with pytest.raises(InputError, match="must not be negative"):
+        operating_point(VEHICLE, -1.0)
     with pytest.raises(InputError, match="drive"):
         operating_point(library.vehicle("manchester_coach"), 30.0)
 

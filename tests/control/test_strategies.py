@@ -10,7 +10,8 @@ import xarray as xr
 import klingel as kl
 from klingel import library
 from klingel.control import IRWLike, Passive, SolidLike
-from klingel.control.common import WHEELSETS, profile_of, twist_of
+from klingel.control.basics import WHEELSETS
+from klingel.control.common import profile_of, twist_of
 from klingel.control.feedforward import ContactDesign, SteeringGeometry, Sway, attack_angle, spin_momentum
 from klingel.control.response import controller_response
 from klingel.drives import DriveTransfer, WheelPair, operating_point
@@ -51,7 +52,10 @@ def test_every_motor_and_actuator_is_driven_and_names_are_unique(strategy: Solid
     assert sorted(c["target"] for c in spec["commands"]) == sorted(f"{w.name}.{s}" for w in WHEELSETS for s in sides)
     names = spec["measurements"] + [block["name"] for block in spec["blocks"]]
     assert len(names) == len(set(names))
-    assert {p["channel"].rsplit(".", 1)[1] for p in spec["probes"]} == {"steering_voltage", "steering_moment_command"}
+    probes = {"steering_voltage", "steering_moment_command"} | (
+        {"integral_share"} if isinstance(strategy, IRWLike) else set()
+    )
+    assert {p["channel"].rsplit(".", 1)[1] for p in spec["probes"]} == probes
 
 
 def test_only_the_database_variants_read_the_position_along_the_track() -> None:

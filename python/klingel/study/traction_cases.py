@@ -102,7 +102,7 @@ def _launch(strategy: str) -> Iterable[TractionRun]:
     # full torque gives 1.0 m/s2 below the base speed, then falls with the power
     time = (0.0, 2.0, 35.0, 70.0, 110.0, 160.0, 190.0)
     speed = tuple(v / 3.6 for v in (0.0, 0.0, 105.0, 185.0, 232.0, 265.0, 265.0))
-    scenario = _scenario(strategy, Track.straight(9.5e3), 0.0, Traction(time, speed=speed))
+    scenario = _scenario(strategy, Track.straight(10e3), 0.0, Traction(time, speed=speed))
     yield TractionRun("launch", f"launch_{strategy}", "0 to 265 km/h on straight track", strategy, scenario)
 
 

@@ -160,8 +160,8 @@ fn check_run(spec: &Spec, track: &Course) -> Result<(), EngineError> {
     let Course::Laid(track) = track else { return Ok(()) };
     let front = spec.bodies.iter().map(|b| b.position[0]).fold(f64::MIN, f64::max);
     let rear = spec.bodies.iter().map(|b| b.position[0]).fold(f64::MAX, f64::min);
-    let acceleration = spec.hold.as_ref().map_or(0.0, |h| h.acceleration);
-    let way = spec.speed * duration + 0.5 * acceleration * duration * duration;
+    // with a free speed the run itself finds the end of the track
+    let way = spec.hold.as_ref().map_or(0.0, |h| spec.speed * duration + 0.5 * h.acceleration * duration * duration);
     let end = spec.track.start + front + way;
     if spec.track.start + rear < 0.0 || end > track.length() + 1e-6 * track.length() {
         return Err(value(
