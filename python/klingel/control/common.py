@@ -101,17 +101,20 @@ def database_curve(d: Diagram, plant: Plant, w: Wheelset, track: Track, timing: 
     return database_curvature(d, f"{w.name}.rho", track, middle), d.product(f"{w.name}.track_roll_rate", twist, speed)
 
 
-def sense_curve(d: Diagram, plant: Plant, contact: ContactDesign, timing: Timing, *, frequency: float) -> None:
+def sense_curve(
+    d: Diagram, plant: Plant, contact: ContactDesign, timing: Timing, *, frequency: float, slow_speed: float
+) -> None:
     """Curvature [1/m] and its slope [1/(m s)] at both bogies, from their gyros and the errors `wd.error`.
 
     A gyro cannot tell the turning of the track from that of the bogie on it, and the second follows from the steering
     itself: a feedforward of the bare yaw rate is a loop with gain one. So the bogie's own turning is taken out:
     psi_b = (y1 - y2)/(2 a) with the displacements that the speed differences tell, y V gamma/r0^2 = wd - lambda r/r0.
+    Below `slow_speed` [m/s] it is taken out by less and less, as the displacement is told worse and worse.
     Both pass low-passes, at `frequency` [Hz] the track's yaw rate and at four times that the bogie's own.
     """
     ts = timing.sample_time
     per_error = -(plant.radius**2) / (contact.conicity * 2.0 * plant.geometry.half_wheelbase)
-    gain = scheduled(d, "bogie_yaw.gain", lambda v: per_error / v)
+    gain = scheduled(d, "bogie_yaw.gain", lambda v: per_error * min(1.0, v / slow_speed) ** 2 / v)
     minus = d.sum("bogie_yaw.minus", {gain: -1.0})
     for bogie in ("bogie1", "bogie2"):
         first, second = (f"{bogie}.wheelset{i}.wd.error" for i in (1, 2))

@@ -46,6 +46,8 @@ class IRWLike:
     curvature: where the curve is known from: "gyro" (gyros of wheelset and bogie) or "database"
         (position along a known track).
     frequency: crossover fI of the steering loop [Hz]; with a conicity half as large again the gain margin is still 2.
+    slow_speed: running speed below which the loop's gain stays [m/s], and its crossover falls with the square of the
+        speed: the gain also damps the wheelset's yaw, by K lambda/r0, which the actuators' lag bears so far.
     integral_time: Ti of the steering loop [s], ten times the loop's own time so that it costs little phase.
     integral_reach: displacement up to which the integral acts [m]. Beyond it, near the flange, adhesion cannot carry
         the lateral force, and an integral would only grow.
@@ -71,6 +73,7 @@ class IRWLike:
 
     curvature: Curvature = "gyro"
     frequency: float = 1.6
+    slow_speed: float = 24.0
     integral_time: float = 1.0
     integral_reach: float = 4e-3
     current_frequency: float = 30.0
@@ -87,7 +90,7 @@ class IRWLike:
         if self.curvature not in get_args(Curvature):
             remedy = nearest(self.curvature, get_args(Curvature))
             raise InputError.single("control.curvature", self.curvature, "is not known", remedy=remedy)
-        loops = ("frequency", "integral_time", "integral_reach", "current_frequency")
+        loops = ("frequency", "slow_speed", "integral_time", "integral_reach", "current_frequency")
         sensors = ("yaw_frequency", "gyro_frequency", "extrapolation", "roll_frequency", "sensor_frequency")
         check_positive(self, (*loops, *sensors))
 
@@ -100,13 +103,14 @@ class IRWLike:
         motors = motors_of(vehicle, self.traction, self.timing, speed)
         d = Diagram(sample_time=self.timing.sample_time)
         proportional = scheduled(d, "steering.gain", lambda v: self._steering_gain(plant, v))
-        integral = d.sum("steering.integral_gain", {proportional: 1.0 / self.integral_time})
+        integral = scheduled(d, "steering.integral_gain", lambda v: self._integral_gain(plant, v))
         sense_inertia(d, plant, self.timing, frequency=self.sensor_frequency)
         for wheelset in WHEELSETS:
             self._torque_loop(d, motors, wheelset)
             self._speed_error(d, plant, wheelset, track)
         if self.curvature == "gyro":
-            sense_curve(d, plant, self.contact, self.timing, frequency=self.gyro_frequency)
+            frequency, slow = self.gyro_frequency, self.slow_speed
+            sense_curve(d, plant, self.contact, self.timing, frequency=frequency, slow_speed=slow)
         for wheelset in WHEELSETS:
             self._steering_loop(d, plant, wheelset, track, proportional, integral)
         return d.spec()
@@ -114,7 +118,12 @@ class IRWLike:
     def _steering_gain(self, plant: Plant, speed: float) -> float:
         """K = 2 pi fI kpsi r0^2/(V^2 gamma) [N m s/rad]: y' = V psi, psi = M/kpsi and wd = V gamma y/r0^2."""
         stiffness = plant.geometry.yaw_stiffness * plant.radius**2 / self.contact.conicity
-        return 2.0 * math.pi * self.frequency * stiffness / speed**2
+        return 2.0 * math.pi * self.frequency * stiffness / max(speed, self.slow_speed) ** 2
+
+    def _integral_gain(self, plant: Plant, speed: float) -> float:
+        """K/Ti [N m/rad], Ti as long against a slow loop as against a quick one."""
+        slow = min(1.0, speed / self.slow_speed)
+        return self._steering_gain(plant, speed) * slow**2 / self.integral_time
 
     def _torque_loop(self, d: Diagram, motors: Motors, w: Wheelset) -> None:
         """Equal torques for both wheels."""

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from klingel.control.basics import SPEED, WHEELSETS, Timing, Wheelset, check_positive
+from klingel.control.basics import SPEED, WHEELSETS, Timing, Wheelset, check_positive, scheduled
 from klingel.control.common import (
     Plant,
     command_steering,
@@ -36,11 +36,13 @@ class SolidLike:
 
     coupling: damping between the wheels over f11 r0^2/V up to `coupling_speed` [m/s], falling with 1/V above: enough to
         centre the wheelset, little enough that its hunting stays damped on the soft primary suspension.
+    slow_speed: running speed below which that damping stays [m/s]; delays and the transmission's torsion bear no more.
     integral_time: of the speed loop [s]. Slow, because integral coupling of two wheels acts as a spring at the hunting
         frequency; it only removes what friction and unequal radii leave.
     lead_pole: time constant [s] that replaces the armature's La/Ra in the speed loop of DC motors.
     notch_frequency, notch_depth, notch_width: of the transmission's torsion mode with the wheel held by creep [Hz].
     yaw_frequency: crossover of the yaw-moment loop [Hz], below the hunting band of 2 to 8 Hz.
+    yaw_speed: running speed below which that falls with the speed [m/s], as the hunting does.
     sensor_frequency: low-pass of the inertial sensors [Hz], above the body's own modes near 1 Hz.
     timing: sampling and delays. contact: what the design assumes of wheel and rail.
     traction: loop that drives and brakes the vehicle through the same motors; None holds their field and mean voltage.
@@ -54,12 +56,14 @@ class SolidLike:
 
     coupling: float = 0.25
     coupling_speed: float = 36.0
+    slow_speed: float = 18.0
     integral_time: float = 5.0
     lead_pole: float = 0.002
     notch_frequency: float = 55.0
     notch_depth: float = 0.1
     notch_width: float = 0.5
     yaw_frequency: float = 0.7
+    yaw_speed: float = 28.0
     sensor_frequency: float = 2.0
     timing: Timing = field(default_factory=Timing)
     contact: ContactDesign = field(default_factory=ContactDesign)
@@ -69,13 +73,14 @@ class SolidLike:
         names = (
             "coupling",
             "coupling_speed",
+            "slow_speed",
             "integral_time",
             "lead_pole",
             "notch_frequency",
             "notch_depth",
             "notch_width",
         )
-        check_positive(self, (*names, "yaw_frequency", "sensor_frequency"))
+        check_positive(self, (*names, "yaw_frequency", "yaw_speed", "sensor_frequency"))
 
     def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any]:
         """The block diagram for a vehicle at a speed [m/s] on a track whose curvature the database knows.
@@ -94,7 +99,7 @@ class SolidLike:
     def _damping(self, plant: Plant, speed: float) -> float:
         """Of the coupling between the wheels [N m s/rad]."""
         coupling = self.coupling * min(1.0, self.coupling_speed / speed)
-        return coupling * self.contact.longitudinal_creep * plant.radius**2 / speed
+        return coupling * self.contact.longitudinal_creep * plant.radius**2 / max(speed, self.slow_speed)
 
     def _speed_loop(self, d: Diagram, plant: Plant, motors: Motors, w: Wheelset, track: Track) -> None:
         """u = K(s) (lambda V rho/r0 - wd), with the back-EMF of the commanded difference added where there is one."""
@@ -123,7 +128,9 @@ class SolidLike:
         )
         total = d.delay(f"{w.name}.M.total", d.measure(f"{w.name}.yaw_moment"), self.timing.sensor_samples)
         error = d.sum(f"{w.name}.M.error", {gyroscopic: 1.0, total: -1.0})
-        crossover = 2.0 * math.pi * self.yaw_frequency
+        crossover = scheduled(
+            d, "yaw_loop.crossover", lambda v: 2.0 * math.pi * self.yaw_frequency * min(1.0, v / self.yaw_speed)
+        )
         feedback = d.pi(
             f"{w.name}.M.feedback", error, proportional=0.0, integral=crossover, limit=0.5 * plant.moment_max
         )
