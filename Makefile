@@ -37,18 +37,19 @@ validate: build ## every validation case; writes docs/validation.md
 lint: build ## rustfmt, clippy, ruff, mypy
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
-	$(BIN)/ruff format --check python tests validation
-	$(BIN)/ruff check python tests validation
+	$(BIN)/ruff format --check python tests validation benches
+	$(BIN)/ruff check python tests validation benches
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest klingel._core
 
 format: $(VENV)/.packages ## format Rust and Python
 	cargo fmt --all
-	$(BIN)/ruff format python tests validation
-	$(BIN)/ruff check --fix python tests validation
+	$(BIN)/ruff format python tests validation benches
+	$(BIN)/ruff check --fix python tests validation benches
 
-bench: $(VENV)/.packages ## Rust benchmarks
+bench: build ## benchmarks: Rust; linear models and root loci
 	cargo bench --workspace --locked
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python benches/linear.py
 
 docs-check: $(VENV)/.packages ## rustdoc without warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked --quiet

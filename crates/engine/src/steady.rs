@@ -151,8 +151,9 @@ impl<'a> Problem<'a> {
     }
 
     /// Newton's method, damped as Deuflhard's natural test wants it: the next step of the same Jacobian must be shorter
-    /// than this one (Newton Methods for Nonlinear Problems, 2004, sec. 3.3). Where that is much shorter, it is taken,
-    /// and so on: a Jacobian and its factors cost as much as twenty steps with them.
+    /// than this one (Newton Methods for Nonlinear Problems, 2004, sec. 3.3). Near the end, where it is much shorter, it
+    /// is taken, and so on: a Jacobian and its factors cost as much as twenty steps with them. Further away wheels soon
+    /// have other contacts, and it leads nowhere.
     fn newton(&self, at: Steady) -> Result<Steady, EngineError> {
         self.iterated(at, true)
     }
@@ -175,15 +176,16 @@ impl<'a> Problem<'a> {
             if size < TOLERANCE || (size < STALLED && size > 0.5 * before) {
                 return Ok(self.moved(&at, &step, 1.0));
             }
-            let mut ahead_of = |at: &Steady| {
-                let ahead = self.plain(at, &mut plain).ok().and_then(|r| solve(&r))?;
-                Some((self.size(at, &ahead), ahead))
+            // the step after this one, its size as seen from here
+            let mut ahead_of = |next: &Steady, here: &Steady| {
+                let ahead = self.plain(next, &mut plain).ok().and_then(|r| solve(&r))?;
+                Some((self.size(here, &ahead), ahead))
             };
             let mut share = (WHEEL_STEP / self.wheel_step(&step)).min(1.0);
             let mut next = self.moved(&at, &step, share);
             let mut ahead = None;
             while damped && share > LEAST_SHARE {
-                ahead = ahead_of(&next).filter(|(length, _)| *length < size * (1.0 - 0.25 * share));
+                ahead = ahead_of(&next, &at).filter(|(length, _)| *length < size * (1.0 - 0.25 * share));
                 if ahead.is_some() {
                     break;
                 }
@@ -191,10 +193,10 @@ impl<'a> Problem<'a> {
                 next = self.moved(&at, &step, share);
             }
             at = next;
-            while let Some((length, step)) = ahead.filter(|(length, _)| *length < LEADS_ON * size) {
-                at = self.moved(&at, &step, (WHEEL_STEP / self.wheel_step(&step)).min(1.0));
+            while let Some((length, step)) = ahead.filter(|(length, _)| *length < WHEEL_STEP.min(LEADS_ON * size)) {
+                at = self.moved(&at, &step, 1.0);
                 size = length;
-                ahead = ahead_of(&at);
+                ahead = ahead_of(&at, &at);
             }
             if size < TOLERANCE {
                 return Ok(at);
