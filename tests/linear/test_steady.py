@@ -5,6 +5,7 @@ import pytest
 
 import klingel as kl
 from klingel.control import IRWLike, SolidLike
+from klingel.errors import SimulationError
 from klingel.linear import steady_spec, steady_state, steady_states
 from klingel.result import simulate_spec
 from klingel.track.cases import perez2004
@@ -86,3 +87,25 @@ def test_an_unstable_state_says_so() -> None:
     calm = steady_state(scenario.replace(speed=60.0))
     assert calm.growth < -0.1
     assert calm.warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("vehicle", "control", "speed", "friction", "said"),
+    [
+        ("mechatronic_irw", IRWLike(), "300 km/h", 0.35, r"83\.33 m/s, friction 0\.35, in a right-hand .* 22\.49"),
+        (
+            "manchester_coach",
+            None,
+            "70 km/h",
+            0.01,
+            r"19\.44 m/s, friction 0\.01, in a right-hand curve of 300 m with 100 mm",
+        ),
+    ],
+)
+def test_what_has_no_steady_state_is_named(
+    vehicle: str, control: object, speed: str, friction: float, said: str
+) -> None:
+    curve = kl.Track.curve(radius="300 m", cant="100 mm", transition="60 m")
+    scenario = kl.Scenario(kl.library.vehicle(vehicle), curve, speed=speed, friction=friction, control=control)
+    with pytest.raises(SimulationError, match=said):
+        steady_state(scenario, at="400 m")

@@ -5,6 +5,7 @@ use klingel_physics::contact::creep::CreepError;
 use klingel_physics::contact::{ContactError, OutsideTable};
 use klingel_physics::elements::StopError;
 use klingel_physics::track::{AdhesionError, AlignmentError};
+use std::fmt;
 use thiserror::Error;
 
 /// A spec that cannot become a model, or a model that has no start.
@@ -28,15 +29,26 @@ pub enum EngineError {
     Creep(#[from] CreepError),
     #[error("controller: {0}")]
     Control(#[from] ControlError),
-    #[error("{}", no_equilibrium(*speed, *curve, *iterations, *residual, state))]
-    Equilibrium { speed: f64, curve: Option<Curve>, iterations: usize, residual: f64, state: String },
+    #[error("no steady state at {course}: {}", search(*iterations, *residual, state, course.curve.is_some()))]
+    Equilibrium { course: Running, iterations: usize, residual: f64, state: String },
     #[error("no linear model: {fault}")]
     Linear { fault: Fault },
     #[error("the run was cancelled at {time:.3} s")]
     Cancelled { time: f64 },
 }
 
-/// The curve that a vehicle should have run in steadily.
+/// How a vehicle should have run steadily.
+#[derive(Clone, Copy, Debug)]
+pub struct Running {
+    /// \[m/s\].
+    pub speed: f64,
+    /// The least of any wheel, none without wheels.
+    pub friction: Option<f64>,
+    /// None on straight level track.
+    pub curve: Option<Curve>,
+}
+
+/// A curve, or cant without one.
 #[derive(Clone, Copy, Debug)]
 pub struct Curve {
     /// \[1/m\], positive in a right-hand curve.
@@ -47,26 +59,35 @@ pub struct Curve {
     pub lateral: f64,
 }
 
-/// Where there is no steady state, how far the search came, and what to look at: in a curve first the running itself.
-fn no_equilibrium(speed: f64, curve: Option<Curve>, iterations: usize, residual: f64, state: &str) -> String {
-    let (place, remedy) = match curve {
-        None => (String::new(), "stiffnesses, preloads, wheel loads and friction"),
-        Some(Curve { curvature, cant, lateral }) => {
-            let course = match 1.0 / curvature {
-                radius if radius.is_infinite() => "on a straight".to_string(),
-                radius => {
-                    format!("in a {}-hand curve of {:.0} m", if radius > 0.0 { "right" } else { "left" }, radius.abs())
-                }
-            };
-            let place = format!(" {course} with {:.0} mm of cant, {lateral:.2} m/s2 unbalanced", 1e3 * cant);
-            (place, "speed, radius, cant and friction, then stiffnesses and preloads")
+impl fmt::Display for Running {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.2} m/s", self.speed)?;
+        if let Some(friction) = self.friction {
+            write!(f, ", friction {friction}")?;
         }
+        let Some(Curve { curvature, cant, lateral }) = self.curve else { return Ok(()) };
+        match curvature {
+            0.0 => write!(f, ", on a straight")?,
+            right if right > 0.0 => write!(f, ", in a right-hand curve of {:.0} m", 1.0 / right)?,
+            left => write!(f, ", in a left-hand curve of {:.0} m", -1.0 / left)?,
+        }
+        write!(f, " with {:.0} mm of cant, {lateral:.2} m/s2 unbalanced", 1e3 * cant)
+    }
+}
+
+/// How far the search for a steady state came, and what to look at: in a curve first the running itself.
+fn search(iterations: usize, residual: f64, state: &str, curved: bool) -> String {
+    let came = if residual.is_finite() {
+        format!("the largest residual is {residual:.3e} in {state}")
+    } else {
+        "none was found that keeps the wheels on their rails".to_string()
     };
-    let came = match residual {
-        r if r.is_finite() => format!("after {iterations} iterations the largest residual is {r:.3e} in {state}"),
-        _ => format!("{iterations} iterations found none that keeps the wheels on their rails"),
+    let remedy = if curved {
+        "speed, radius, cant and friction, then stiffnesses and preloads"
+    } else {
+        "stiffnesses, preloads, wheel loads and friction"
     };
-    format!("no steady state at {speed:.2} m/s{place}: {came}; check {remedy}")
+    format!("{came} (iterations: {iterations}); check {remedy}")
 }
 
 impl Fault {
@@ -105,17 +126,19 @@ pub enum Fault {
 mod tests {
     use super::*;
 
+    fn said(curve: Option<Curve>, residual: f64) -> String {
+        let course = Running { speed: 83.333, friction: Some(0.01), curve };
+        EngineError::Equilibrium { course, iterations: 7, residual, state: "body.y".into() }.to_string()
+    }
+
     #[test]
-    fn no_steady_state_names_the_curve() {
+    fn no_steady_state_names_speed_friction_and_curve() {
         let curve = Curve { curvature: -1.0 / 300.0, cant: -0.1, lateral: -22.49 };
-        let said = no_equilibrium(83.333, Some(curve), 300, f64::INFINITY, "body.y");
-        assert!(said.starts_with("no steady state at 83.33 m/s in a left-hand curve of 300 m with -100 mm of cant"));
-        assert!(said.contains("-22.49 m/s2 unbalanced: 300 iterations found none"));
-        let straight = no_equilibrium(40.0, None, 7, 1.5e3, "body.y");
-        assert!(
-            straight.starts_with("no steady state at 40.00 m/s: after 7 iterations the largest residual is 1.500e3")
-        );
-        let canted = no_equilibrium(40.0, Some(Curve { curvature: 0.0, cant: 0.1, lateral: -0.65 }), 7, 1.0, "body.y");
-        assert!(canted.contains("on a straight with 100 mm of cant"));
+        let place = "no steady state at 83.33 m/s, friction 0.01, in a left-hand curve of 300 m with -100 mm of cant";
+        assert!(said(Some(curve), f64::INFINITY).starts_with(place));
+        assert!(said(Some(curve), f64::INFINITY).contains("-22.49 m/s2 unbalanced: none was found that keeps"));
+        let straight = "no steady state at 83.33 m/s, friction 0.01: the largest residual is 1.500e3 in body.y";
+        assert!(said(None, 1.5e3).starts_with(straight));
+        assert!(said(Some(Curve { curvature: 0.0, ..curve }), 1.0).contains("on a straight with -100 mm of cant"));
     }
 }

@@ -2,7 +2,7 @@
 //! Newton's method on the rates of the model itself with the exact Jacobian; the curve is entered step by step.
 
 use crate::equilibrium::{design_state, scale_speeds, settle_on_rails};
-use crate::error::{Curve, EngineError, Fault};
+use crate::error::{Curve, EngineError, Fault, Running};
 use crate::model::{Course, Model};
 use crate::pass::{DIRECTIONS, Pass};
 use crate::wiring::Wiring;
@@ -274,18 +274,20 @@ impl<'a> Problem<'a> {
             }
             (None, None) => "none".into(),
         };
-        EngineError::Equilibrium { speed: self.m.speed, curve: self.curve(), iterations, residual, state }
+        EngineError::Equilibrium { course: self.course(), iterations, residual, state }
     }
 
-    /// The curve, for what a failure says; nothing on straight level track.
-    fn curve(&self) -> Option<Curve> {
-        match self.m.track {
+    /// How it should run, for what a failure says.
+    fn course(&self) -> Running {
+        let m = self.m;
+        let curve = match m.track {
             Course::Uniform(t) if t.curvature != 0.0 || t.cant != 0.0 => {
-                let lateral = self.m.speed.powi(2) * t.curvature - self.m.gravity * t.cant / t.cant_base;
+                let lateral = m.speed.powi(2) * t.curvature - m.gravity * t.cant / t.cant_base;
                 Some(Curve { curvature: t.curvature, cant: t.cant, lateral })
             }
             _ => None,
-        }
+        };
+        Running { speed: m.speed, friction: m.wheels.iter().map(|w| w.friction).reduce(f64::min), curve }
     }
 
     /// Writes a state as constants.

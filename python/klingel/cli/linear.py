@@ -119,6 +119,7 @@ def rootlocus(
     from klingel.linear import parameters
     from klingel.linear.locus import root_locus
     from klingel.plot.linear import least_damped, locus_figure
+    from klingel.plot.scale import labelled, readable
 
     unit = parameters.unit(made, parameter)
     values = np.linspace(*_ends(made, parameter, unit, start, end), points)
@@ -133,13 +134,14 @@ def rootlocus(
     place = where(made, at, plant, settings=settings, without=without, speed=parameter != "speed")
     title = f"{made.vehicle.name} over {parameter}" + (f", {place}" if place else "")
     draw(locus_figure(locus, title=title), out)
+    shown, per = readable(unit, values)
     rows = [
         {
             "name": locus.names[i],
             "first": f"{100 * locus.damping[0, i]:.1f}",
             "last": f"{100 * locus.damping[-1, i]:.1f}",
             "least": f"{100 * np.nanmin(locus.damping[:, i]):.1f}",
-            "at": f"{values[np.nanargmin(locus.damping[:, i])]:.4g}",
+            "at": f"{per * values[np.nanargmin(locus.damping[:, i])]:.4g}",
         }
         for i in least_damped(locus, 12)
     ]
@@ -151,7 +153,7 @@ def rootlocus(
         "first": "damping % first",
         "last": "last",
         "least": "least",
-        "at": f"at {parameter} [{unit}]",
+        "at": labelled(f"at {parameter}", shown),
     }
     print_rows(pd.DataFrame(rows, columns=list(heads)), heads, title=f"{title}: least damped")
     write(locus.table(), table)
@@ -159,19 +161,21 @@ def rootlocus(
 
 
 def _ends(made: Scenario, parameter: str, unit: str, start: str | None, end: str | None) -> tuple[float, float]:
-    """First and last value of a root locus, in SI; errors: InputError for one value alone."""
+    """First and last value of a root locus, in SI; errors: InputError for a range of one value."""
     from klingel.errors import InputError
     from klingel.linear import parameters
     from klingel.linear.critical import lowest_speed
     from klingel.units import to_si
 
-    if parameter == "speed":
-        ends = lowest_speed(made.vehicle, SLOWEST), FASTEST
-    elif start is None or end is None:
-        value = parameters.get(made, parameter)
-        ends = 0.5 * value, 2.0 * value
-    first = ends[0] if start is None else to_si(start, unit, key="--from")
-    last = ends[1] if end is None else to_si(end, unit, key="--to")
+    varies_speed = parameter == "speed"
+    if start is not None:
+        first = to_si(start, unit, key="--from")
+    else:
+        first = lowest_speed(made.vehicle, SLOWEST) if varies_speed else 0.5 * parameters.get(made, parameter)
+    if end is not None:
+        last = to_si(end, unit, key="--to")
+    else:
+        last = FASTEST if varies_speed else 2.0 * parameters.get(made, parameter)
     if first == last:
         raise InputError.single("--to", last, "is the first value too", remedy=f"give a range of {parameter} [{unit}]")
     return first, last
