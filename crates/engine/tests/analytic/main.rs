@@ -3,6 +3,7 @@
 
 mod bogie;
 mod common;
+mod drives;
 mod energy;
 mod flange;
 mod frames;
