@@ -1,6 +1,13 @@
 """Traction drives: running resistance, operating point of the motors, transfer functions of Eqs (12) to (29).
 Equation numbers are those of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 207-217."""
 
+from klingel.drives.characteristic import (
+    Excitation,
+    base_speed,
+    excitation,
+    operating_characteristic,
+    torque_limit,
+)
 from klingel.drives.demand import Demand, Resistance, torque_demand
 from klingel.drives.induction import InductionPoint, induction_point, induction_torque_max
 from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
@@ -12,21 +19,26 @@ __all__ = [
     "DavisCoefficients",
     "Demand",
     "DriveTransfer",
+    "Excitation",
     "InductionPoint",
     "OperatingPoint",
     "Rational",
     "Resistance",
     "TwoInputs",
     "WheelPair",
+    "base_speed",
+    "excitation",
     "field_current",
     "induction_point",
     "induction_torque_max",
+    "operating_characteristic",
     "operating_point",
     "operating_table",
     "running_resistance",
     "sncf_general",
     "torque_constant",
     "torque_demand",
+    "torque_limit",
     "wheel_torque",
     "wheel_torque_max",
 ]
