@@ -17,6 +17,7 @@ from klingel.control.diagram import Diagram
 from klingel.control.discrete import lead
 from klingel.control.response import controller_response
 from klingel.drives import DriveTransfer, WheelPair, operating_point
+from klingel.errors import InputError
 from klingel.linear.measured import Measured, measured_response
 from klingel.linear.model import LinearModel
 from klingel.linear.operating import steady_spec
@@ -65,6 +66,8 @@ def rig_spec(vehicle: Vehicle, speed: Quantity, *, held: bool = False) -> Spec:
     >>> len(spec["bodies"]), len(spec["drives"]), spec["bodies"][0]["guided"]
     (1, 2, ['x', 'y', 'roll', 'pitch', 'yaw'])
     """
+    if vehicle.drive is None:
+        raise InputError.single("drive", None, "is missing", remedy=f"{vehicle.name} is hauled; take a driven vehicle")
     scenario = Scenario(vehicle, Track.straight(1000.0), speed=speed, creep_law="linear", step=STEP)
     whole = steady_spec(scenario)
     first = next(b for b in whole["bodies"] if b["name"].endswith("wheelset1"))
