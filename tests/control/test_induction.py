@@ -14,12 +14,13 @@ import klingel as kl
 from klingel import library
 from klingel.control import IRWLike, SolidLike
 from klingel.control.common import WHEELSETS
+from klingel.control.response import controller_response
 from klingel.core import core
-from klingel.drives import induction_point, induction_torque_max, operating_point
+from klingel.drives import InductionTransfer, WheelPair, induction_point, induction_torque_max, operating_point
 from klingel.errors import InputError
 from klingel.linear import steady_spec
 from klingel.linear.modes import modes
-from klingel.linear.rig import torque_response
+from klingel.linear.rig import STEP, longitudinal_creep, torque_response
 from klingel.lower import lower
 from klingel.track import Track
 
@@ -101,6 +102,37 @@ def test_torque_answers_as_that_of_the_dc_motor_below_15_hz(speed: float) -> Non
     assert np.abs(20.0 * np.log10(np.abs(ratio))).max() < 1.0
     assert np.abs(np.degrees(np.angle(ratio))).max() < 10.0
     assert np.abs(induction[0]) == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("speed", [SPEEDS[0], SPEEDS[4]])
+def test_the_transfer_functions_are_what_the_rig_answers(speed: float) -> None:
+    """Eq. (27) with A = a/(s + a): within 0.01 dB once sample, output and hold of the command are counted."""
+    f, found = torque_response(VEHICLE, speed, band=(1.0, 100.0))
+    omega = 2.0 * np.pi * f
+    pair = WheelPair(45.0, 0.46, speed, longitudinal_creep(VEHICLE))
+    s = 1j * omega * STEP
+    stated = InductionTransfer.of(DRIVE).torque_plant(pair).response(omega) * np.exp(-s) * (1.0 - np.exp(-s)) / s
+    np.testing.assert_allclose(found / stated, 1.0, atol=2e-3)
+
+
+@pytest.mark.parametrize("speed", SPEEDS)
+def test_the_speed_loop_of_s_has_a_gain_margin_of_2_and_a_phase_margin_of_45_degrees(speed: float) -> None:
+    """On the plant (29) of the induction drive, with creep coefficients 30 % off either way."""
+    omega = 2.0 * np.pi * np.geomspace(0.1, 400.0, 3000)
+    spec = SolidLike().lower(VEHICLE, CURVE, speed)
+    response = controller_response(spec, {"body.speed": speed}, omega)
+    command = [c["target"] for c in spec["commands"]].index("bogie1.wheelset1.left.torque_command")
+    left, right = (spec["measurements"].index(f"bogie1.wheelset1.{side}.spin_speed") for side in ("left", "right"))
+    controller = response[:, command, left] - response[:, command, right]
+    late = np.exp(-1.5j * omega * spec["sample_time"])
+    for creep in (7.0e6, 10.0e6, 13.0e6):
+        plant = InductionTransfer.of(DRIVE).speed_plant(WheelPair(45.0, 0.46, speed, creep)).response(omega)
+        loop = -controller * plant * late
+        crosses = (loop.imag[1:] * loop.imag[:-1] < 0.0) & (loop.real[1:] < 0.0)
+        assert np.max(np.abs(loop[1:][crosses]), initial=0.0) < 0.5
+        unity = (np.abs(loop[1:]) - 1.0) * (np.abs(loop[:-1]) - 1.0) < 0.0
+        phases = 180.0 - np.abs(np.degrees(np.angle(loop[1:][unity])))
+        assert np.min(phases, initial=180.0) > 45.0
 
 
 def y_max(run: xr.Dataset) -> float:

@@ -13,7 +13,7 @@ from klingel.drives.induction import InductionPoint, induction_point, induction_
 from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
 from klingel.drives.operating import OperatingPoint, operating_point, operating_table
 from klingel.drives.resistance import DavisCoefficients, running_resistance, sncf_general
-from klingel.drives.transfer import DriveTransfer, Rational, TwoInputs, WheelPair
+from klingel.drives.transfer import DriveTransfer, InductionTransfer, Rational, TwoInputs, WheelPair
 
 __all__ = [
     "DavisCoefficients",
@@ -21,6 +21,7 @@ __all__ = [
     "DriveTransfer",
     "Excitation",
     "InductionPoint",
+    "InductionTransfer",
     "OperatingPoint",
     "Rational",
     "Resistance",
