@@ -283,9 +283,9 @@ def plant_departure(
 ) -> PlantDeparture:
     """Eqs (27) and (29) against the exact linear model of the vehicle on straight track, no controller acting.
 
-    Eq. (26) drops yaw and lateral motion, which carry the wheels along. Where wd is kept at nil the two wheels are a solid wheelset, so the zeros of
-    wd/u are the motions of the vehicle with that pair locked: the kinematic oscillation of Klingel, V/(2 pi)
-    sqrt(gamma/(lambda r0)), hardly damped (docs/theory/drives.md).
+    Eq. (26) drops yaw and lateral motion, which carry the wheels along. Where wd is kept at nil the two wheels are a
+    solid wheelset, so the zeros of wd/u are the motions of the vehicle with that pair locked: the kinematic oscillation
+    of Klingel, V/(2 pi) sqrt(gamma/(lambda r0)), hardly damped (docs/theory/drives.md).
     Errors: InputError for a vehicle without DC motors; SimulationError where it has no steady state.
     """
     scenario = Scenario(vehicle, Track.straight(1000.0), speed=speed, creep_law=creep_law)
