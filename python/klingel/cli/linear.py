@@ -93,8 +93,7 @@ def rootlocus(
         str | None,
         typer.Option(
             "--from",
-            help="First value, with its unit. Default: 15 m/s, of a driven vehicle the first whole m/s above the base "
-            "speed of its motors; of other numbers, half of what they are.",
+            help="First value, with its unit. Default: 15 m/s; of other numbers, half of what they are.",
         ),
     ] = None,
     end: Annotated[
@@ -164,14 +163,13 @@ def _ends(made: Scenario, parameter: str, unit: str, start: str | None, end: str
     """First and last value of a root locus, in SI; errors: InputError for a range of one value."""
     from klingel.errors import InputError
     from klingel.linear import parameters
-    from klingel.linear.critical import lowest_speed
     from klingel.units import to_si
 
     varies_speed = parameter == "speed"
     if start is not None:
         first = to_si(start, unit, key="--from")
     else:
-        first = lowest_speed(made.vehicle, SLOWEST) if varies_speed else 0.5 * parameters.get(made, parameter)
+        first = SLOWEST if varies_speed else 0.5 * parameters.get(made, parameter)
     if end is not None:
         last = to_si(end, unit, key="--to")
     else:
@@ -188,13 +186,7 @@ def critical_speed(
     settings: Setting = None,
     without: Without = None,
     plant: Plant = False,
-    lowest: Annotated[
-        str | None,
-        typer.Option(
-            help="Where the search begins. Default: 10 m/s, of a driven vehicle the first whole m/s above the base "
-            "speed of its motors."
-        ),
-    ] = None,
+    lowest: Annotated[str, typer.Option(help="Where the search begins.")] = "10 m/s",
     highest: Annotated[str, typer.Option(help="Where it ends.")] = "120 m/s",
     nonlinear: Annotated[
         bool, typer.Option("--nonlinear", help="Also the limit cycle: runs that slow down and at constant speed.")

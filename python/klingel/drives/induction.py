@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from klingel.vehicle import InductionDrive, Vehicle
 
 
+VOLTAGE_USED = 0.95
+"""Share of the voltage that the control commands steady currents up to; the rest pays resistances and changes."""
+
+
 @dataclass(frozen=True)
 class Circuit:
     """What the control makes of the equivalent circuit; inductances [H], coupling: Lm/Lr [-], rotor_time: Lr/Rr [s]."""
@@ -78,7 +82,7 @@ def induction_torque_max(drive: InductionDrive, motor_speed: float) -> float:
     flux = rotor_flux(drive, motor_speed)
     i_d = flux / drive.magnetizing_inductance
     by_current = drive.current_max**2 - i_d**2
-    linked = drive.voltage_max / max(abs(motor_speed), 0.5 * weakening_speed(drive)) / drive.pole_pairs
+    linked = VOLTAGE_USED * drive.voltage_max / max(abs(motor_speed), 0.5 * weakening_speed(drive)) / drive.pole_pairs
     by_voltage = (linked**2 - (circuit.stator * i_d) ** 2) / circuit.transient**2
     return circuit.torque_factor * flux * math.sqrt(min(by_current, by_voltage))
 

@@ -8,10 +8,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from klingel.drives.characteristic import excitation
 from klingel.drives.demand import torque_demand
 from klingel.drives.formulas import Resistance
-from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
-from klingel.errors import InputError
+from klingel.drives.motor import torque_constant, wheel_torque_max
 
 if TYPE_CHECKING:
     from klingel.vehicle import Vehicle
@@ -23,7 +23,8 @@ class OperatingPoint:
 
     speed [m/s]; resistance: per wheel [N]; wheel_torque: on the wheel [N m]; motor_speed: wM [rad/s];
     field_current: If [A]; field_current_normalised: If over its rated value [-]; armature_current: Ia [A];
-    torque_constant: KT [N m/A]; armature_voltage: x VaMax [V]; wheel_torque_max: the largest TW of Eq. (5) [N m].
+    torque_constant: KT [N m/A]; armature_voltage: Va, x VaMax above the base speed [V]; wheel_torque_max: the largest
+    TW of Eq. (5) [N m].
     """
 
     speed: float
@@ -54,48 +55,19 @@ def operating_point(vehicle: Vehicle, speed: float, *, resistance: Resistance | 
     """
     drive = vehicle.dc_drive
     demand = torque_demand(vehicle, drive, speed, resistance)
-    turning, rated = demand.motor_speed > 0.0, drive.field_current_rated
-    current = min(rated, field_current(drive, demand.air_gap, demand.motor_speed)) if turning else rated
-    kt = torque_constant(drive, current)
-    armature_current = drive.gear_ratio * demand.air_gap / kt
+    made = excitation(drive, demand.air_gap, demand.motor_speed)
     return OperatingPoint(
         speed=speed,
         resistance=demand.resistance,
         wheel_torque=demand.wheel,
         motor_speed=demand.motor_speed,
-        field_current=current,
-        field_current_normalised=current / drive.field_current_rated,
-        armature_current=armature_current,
-        torque_constant=kt,
-        armature_voltage=kt * demand.motor_speed + drive.armature_resistance * armature_current,
-        wheel_torque_max=wheel_torque_max(drive, demand.motor_speed) if turning else math.inf,
+        field_current=made.field_current,
+        field_current_normalised=made.field_current / drive.field_current_rated,
+        armature_current=made.armature_current,
+        torque_constant=torque_constant(drive, made.field_current),
+        armature_voltage=made.armature_voltage,
+        wheel_torque_max=wheel_torque_max(drive, demand.motor_speed) if demand.motor_speed > 0.0 else math.inf,
     )
-
-
-def base_speed(vehicle: Vehicle) -> float:
-    """The speed [m/s] at which a driven vehicle runs steadily with the rated field; below, it would need more of it.
-
-    Errors: InputError for a vehicle without DC motors, and for motors that the running resistance is too much for.
-
-    >>> from klingel import library
-    >>> round(base_speed(library.vehicle("mechatronic_irw")), 2)
-    29.67
-    """
-    from scipy.optimize import brentq
-
-    drive = vehicle.dc_drive
-    constant = torque_constant(drive, drive.field_current_rated)
-    no_load = drive.traction_share * drive.armature_voltage_max / constant
-    highest = no_load * drive.gear_ratio * vehicle.geometry.wheel_radius
-
-    def surplus(speed: float) -> float:
-        demand = torque_demand(vehicle, drive, speed)
-        return wheel_torque(drive, drive.field_current_rated, demand.motor_speed) - demand.air_gap
-
-    if surplus(0.0) <= 0.0:
-        remedy = "raise the traction share or the rated field"
-        raise InputError.single("drive", None, "does not hold the running resistance at any speed", remedy=remedy)
-    return float(brentq(surplus, 0.0, highest))
 
 
 def operating_table(

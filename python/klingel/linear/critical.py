@@ -3,7 +3,6 @@ A sweep over the speed finds the bracket, Brent's method the root; exact Jacobia
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -12,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from klingel.drives import base_speed
 from klingel.errors import InputError
 from klingel.linear.blocks import eigenvalues, lives
 from klingel.linear.model import LinearModel
@@ -20,13 +18,15 @@ from klingel.linear.modes import STILL, Mode, modes
 from klingel.linear.sweep import Sweep
 from klingel.scenario import Scenario
 from klingel.units import Quantity, to_si
-from klingel.vehicle import Vehicle
 
 if TYPE_CHECKING:
     import pandas as pd
 
 SPEED_RESOLUTION = 1e-3
 """Of a critical speed [m/s]."""
+
+LOWEST = 10.0
+"""Where a search for a critical speed begins [m/s]."""
 
 SLOWEST = 0.1
 """Frequency from which an eigenvalue is one of an oscillation that counts [Hz]."""
@@ -66,7 +66,7 @@ class CriticalSpeed:
 def critical_speed(
     scenario: Scenario,
     *,
-    lowest: Quantity | None = None,
+    lowest: Quantity = LOWEST,
     highest: Quantity = "120 m/s",
     points: int = 23,
     at: Quantity | None = None,
@@ -75,12 +75,11 @@ def critical_speed(
 ) -> CriticalSpeed:
     """The lowest speed at which a mode loses its damping.
 
-    lowest, highest, points: of the sweep that looks for it, from `lowest_speed` if nothing else is said; at,
-    controllers: as for `klingel.linearise`; step: called with how many speeds of the sweep are done and how many there
-    are.
+    lowest, highest, points: of the sweep that looks for it; at, controllers: as for `klingel.linearise`; step: called
+    with how many speeds of the sweep are done and how many there are.
     Errors: InputError for a range that is none, and as `klingel.linearise`.
     """
-    first = lowest_speed(scenario.vehicle) if lowest is None else to_si(lowest, "m/s", key="lowest")
+    first = to_si(lowest, "m/s", key="lowest")
     ends = first, to_si(highest, "m/s", key="highest")
     if not 0.0 < ends[0] < ends[1]:
         raise InputError.single(
@@ -117,18 +116,6 @@ def critical_speed(
         -s.real / np.abs(s),
         np.abs(s.imag) / (2.0 * np.pi),
     )
-
-
-def lowest_speed(vehicle: Vehicle, least: float = 10.0) -> float:
-    """Where sweeps over the speed begin [m/s]: at `least`, but above the base speed of a driven vehicle.
-
-    Below that its motors have no steady state. The next whole number above it is taken.
-
-    >>> from klingel import library
-    >>> lowest_speed(library.vehicle("manchester_coach")), lowest_speed(library.vehicle("mechatronic_irw"))
-    (10.0, 30.0)
-    """
-    return least if vehicle.drive is None else max(least, float(math.ceil(base_speed(vehicle))))
 
 
 def least_stable(model: LinearModel) -> complex:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from klingel.errors import InputError, SimulationError
-from klingel.linear.critical import CriticalSpeed, critical_speed, lowest_speed
+from klingel.linear.critical import LOWEST, CriticalSpeed, critical_speed
 from klingel.lower import Spec, lower
 from klingel.result import COMPLETED, simulate_spec
 from klingel.scenario import Scenario
@@ -78,7 +78,7 @@ def bifurcation(
     scenario: Scenario,
     *,
     begin: Quantity | None = None,
-    lowest: Quantity | None = None,
+    lowest: Quantity = LOWEST,
     deceleration: Quantity = "0.5 m/s^2",
     resolution: Quantity = "0.5 m/s",
     linear: CriticalSpeed | None = None,
@@ -93,7 +93,7 @@ def bifurcation(
     as by derailing.
     """
     said = step if step is not None else _silent
-    end = lowest_speed(scenario.vehicle) if lowest is None else to_si(lowest, "m/s", key="lowest")
+    end = to_si(lowest, "m/s", key="lowest")
     rate = to_si(deceleration, "m/s^2", key="deceleration")
     fine = to_si(resolution, "m/s", key="resolution")
     if linear is None:

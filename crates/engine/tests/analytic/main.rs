@@ -4,6 +4,7 @@
 mod along_track;
 mod bogie;
 mod common;
+mod drives;
 mod energy;
 mod flange;
 mod frames;

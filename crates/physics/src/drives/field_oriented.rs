@@ -9,6 +9,11 @@ const FLUX_LEAST: f64 = 0.1;
 /// Share of the current limit that stays for the torque when the flux needs more than there is.
 const CURRENT_LEAST: f64 = 0.1;
 
+/// Share of the voltage that stays for q, however much d wants: the circle is passed by its square at most.
+const VOLTAGE_LEAST: f64 = 0.01;
+/// Share of the voltage that steady currents may be commanded up to; the rest pays resistances and changes.
+const VOLTAGE_USED: f64 = 0.95;
+
 /// Constants of control and inverter; the drive is one pole at `torque_bandwidth` while no limit is met.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldOriented {
@@ -62,14 +67,14 @@ impl FieldOriented {
     }
 
     /// Largest current across the flux \[A\] beside `i_d`: within the current limit, and within the voltage at speed
-    /// (v/w)^2 = (Ls i_d)^2 + (sigma Ls i_q)^2, resistances left out.
+    /// (v/w)^2 = (Ls i_d)^2 + (sigma Ls i_q)^2, with a twentieth of the voltage for the resistances.
     #[inline(always)]
     pub fn cross_current_max<S: Scalar>(&self, i_d: S, motor_speed: S) -> S {
         let m = &self.model;
         let least = CURRENT_LEAST * self.current_max;
         let current = (i_d.square() * -1.0 + self.current_max * self.current_max).max(S::constant(least * least));
         let speed = (motor_speed * m.pole_pairs).abs().max(S::constant(0.5 * self.weakening_speed()));
-        let linked = speed.recip() * self.voltage_max;
+        let linked = speed.recip() * (VOLTAGE_USED * self.voltage_max);
         let voltage = (linked.square() - (i_d * m.stator_inductance()).square()) / m.transient_inductance().powi(2);
         current.min(voltage.max(S::constant(least * least))).sqrt()
     }
@@ -118,12 +123,13 @@ impl FieldOriented {
         (Excited { voltage, frame_speed }, rates)
     }
 
-    /// The voltage scaled back into the circle that the inverter reaches.
+    /// The voltage within the circle that the inverter reaches, d first: the flux is kept, torque gives way.
     #[inline(always)]
     fn limited<S: Scalar>(&self, [d, q]: [S; 2]) -> [S; 2] {
-        let size = (d.square() + q.square()).max(S::constant(self.voltage_max * self.voltage_max)).sqrt();
-        let share = size.recip() * self.voltage_max;
-        [d * share, q * share]
+        let d = d.clamp(-self.voltage_max, self.voltage_max);
+        let least = VOLTAGE_LEAST * self.voltage_max;
+        let rest = (d.square() * -1.0 + self.voltage_max * self.voltage_max).max(S::constant(least * least)).sqrt();
+        [d, q.max(-rest).min(rest)]
     }
 
     /// The settled states of motor and control for an air-gap torque \[N m\] within the limits, the motor being as the
@@ -240,12 +246,14 @@ mod tests {
     #[test]
     fn a_detuned_control_gives_another_torque_and_stays_stable() {
         let warm = InductionMotor { rotor_resistance: 1.3 * MOTOR.rotor_resistance, ..MOTOR };
-        for speed in [20.0, 200.0, 480.0] {
+        for (speed, within) in [(20.0, 0.3), (200.0, 0.3), (480.0, 0.6)] {
             let x = run(&warm, start(150.0, speed), 150.0, speed, 1e-3, 8000);
             let further = run(&warm, x, 150.0, speed, 1e-3, 1000);
             assert!(x.iter().zip(&further).all(|(a, b)| (a - b).abs() < 1e-6), "settled at {speed}");
             assert!(x[3].abs() > 1e-3, "the flux is off its axis: {}", x[3]);
-            assert!((torque(&x) / 150.0 - 1.0).abs() < 0.3 && (torque(&x) / 150.0 - 1.0).abs() > 1e-3);
+            // at 480 rad/s the stronger flux takes the voltage that the torque needs
+            let off = torque(&x) / 150.0 - 1.0;
+            assert!(off < -1e-3 && off > -within, "{off} at {speed}");
         }
     }
 
@@ -257,7 +265,7 @@ mod tests {
             assert!(x[0].hypot(x[1]) < 1.001 * CONTROL.current_max, "{:?}", x);
             let inner = FieldOrientedState { flux: x[4], integral: [x[5], x[6]] };
             let (out, _) = CONTROL.control(&inner, [x[0], x[1]], command, speed);
-            assert!(out.voltage[0].hypot(out.voltage[1]) <= CONTROL.voltage_max * (1.0 + 1e-12));
+            assert!(out.voltage[0].hypot(out.voltage[1]) <= CONTROL.voltage_max * (1.0 + 1e-4));
             assert!(torque(&x) * command > 0.0 && torque(&x).abs() > 100.0, "{}", torque(&x));
             let back = run(&MOTOR, x, 0.0, speed, 5e-4, 100);
             assert!(torque(&back).abs() < 2.0, "{} after 50 ms", torque(&back));
