@@ -14,4 +14,5 @@ mod limits;
 mod linear;
 mod sampling;
 mod scalars;
+mod standstill;
 mod wheelset;
