@@ -51,7 +51,7 @@ def test_it_closes_in_a_tight_curve(simulate: Simulate, vehicle: str) -> None:
 
 def test_it_closes_on_rails_that_move() -> None:
     spec = spec_of("manchester_coach")
-    rise, turn = 4e-3, 2.0 * np.pi * 2.0 * np.arange(3000) * 1e-3
+    rise, turn = 8e-3, 2.0 * np.pi * 2.0 * np.arange(3000) * 1e-3
     spec["run"]["excitations"] = [
         {"input": f"{wheel['name']}.{part}", "interval": 1e-3, "values": values.tolist(), "joined": True}
         for wheel in spec["wheels"]
@@ -62,8 +62,8 @@ def test_it_closes_on_rails_that_move() -> None:
     ]
     run = kl.simulate_spec(spec, strict=True)
     table = energy(run)["energy_kJ"]
-    assert table["rails"] > 0.5
-    assert table["suspension"] > 0.3
+    assert table["rails"] > 0.3
+    assert table["suspension"] > 0.2
     assert abs(table["residual"]) < 1e-3 * table["rails"]
 
 
@@ -132,7 +132,7 @@ def test_the_figure_shows_what_came_in_and_where_it_went(simulate: Simulate) -> 
 
 
 def test_curve_resistance_of_the_model_is_that_of_the_formulas() -> None:
-    """The coach at R 600 m without cant deficiency against Roeckl: within a factor of two, as wear profiles allow."""
+    """The coach at R 600 m without cant deficiency against Roeckl; 0.91 of it when this was written."""
     speed, radius = 25.0, 600.0
     cant = 1.5 * np.sin(np.arctan(speed**2 / radius / 9.81))
     track = kl.Track.curve(radius=radius, cant=cant, transition="90 m", arc="220 m", straight_before="30 m")
@@ -142,4 +142,4 @@ def test_curve_resistance_of_the_model_is_that_of_the_formulas() -> None:
     first, last = np.searchsorted(front, [250.0, 335.0])
     lost = run["energy.contact_friction"].to_numpy()
     resistance = (lost[last] - lost[first]) / (front[last] - front[first])
-    assert 0.5 < resistance / curve_resistance(mass=coach.total_mass, radius=radius) < 2.0
+    assert 0.8 < resistance / curve_resistance(mass=coach.total_mass, radius=radius) < 1.2
