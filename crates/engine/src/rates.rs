@@ -40,6 +40,8 @@ pub struct Workspace<S> {
     /// Force on each body without gravity, in T \[N\]: what an accelerometer feels.
     pub felt_T: Vec<Vec3<S>>,
     pub hold_force: S,
+    /// Creep forces get the slopes that linearly implicit steps want, `CreepForce::force_with_secants`.
+    pub secants: bool,
 }
 
 impl<S: Scalar> Workspace<S> {
@@ -58,6 +60,7 @@ impl<S: Scalar> Workspace<S> {
             motor_reaction: vec![S::zero(); bodies],
             felt_T: vec![Vec3::zero(); bodies],
             hold_force: S::zero(),
+            secants: false,
         }
     }
 

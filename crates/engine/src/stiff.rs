@@ -67,7 +67,7 @@ impl<const K: usize> Directions<K> {
             x: vec![Dual::zero(); n],
             inputs: vec![Dual::zero(); m.places.count],
             dx: vec![Dual::zero(); n],
-            work: Workspace::new(m),
+            work: Workspace { secants: true, ..Workspace::new(m) },
         }
     }
 
