@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from klingel.contact import profile_of
-from klingel.drives import operating_point, running_resistance
+from klingel.drives import induction_point, operating_point, running_resistance
 from klingel.scenario import Scenario
 from klingel.track import CANT_BASE, Adhesion, Track
-from klingel.vehicle import Vehicle
+from klingel.vehicle import Drive, InductionDrive, Transmission, Vehicle
 
 GRAVITY = 9.81
 """[m/s2], as the study's cant deficiencies assume."""
@@ -42,6 +42,16 @@ class Axle(NamedTuple):
     def inward(self) -> float:
         return 1.0 if self.bogie_x > self.x else -1.0
 
+
+CIRCUIT = (
+    "stator_resistance",
+    "rotor_resistance",
+    "stator_leakage",
+    "rotor_leakage",
+    "magnetizing_inductance",
+    "pole_pairs",
+)
+"""Equivalent circuit of an induction motor."""
 
 SIDES = (("left", -1.0), ("right", 1.0))
 
@@ -89,7 +99,8 @@ def lower(scenario: Scenario) -> Spec:
         "maxwells": [*_primary_dampers(vehicle, wheels), *_secondary_dampers(vehicle)],
         "stops": [_lateral_stop(vehicle, bogie, x) for bogie, x in _bogies(vehicle)],
         "actuators": list(_actuators(vehicle, wheels)),
-        "drives": list(_drives(vehicle, wheels, scenario.speed)),
+        "drives": list(_drives(vehicle, wheels, scenario.speed, control)),
+        "induction_drives": list(_induction_drives(vehicle, wheels, scenario.speed)),
         "drag": _drag(vehicle, scenario.headwind),
         "hold": _hold(vehicle),
         "control": control,
@@ -288,30 +299,71 @@ def _actuators(vehicle: Vehicle, wheels: tuple[Axle, ...]) -> Iterator[Spec]:
             }
 
 
-def _drives(vehicle: Vehicle, wheels: tuple[Axle, ...], speed: float) -> Iterator[Spec]:
+def _drives(vehicle: Vehicle, wheels: tuple[Axle, ...], speed: float, control: Spec | None) -> Iterator[Spec]:
+    """DC drives; their fields move where the controller commands a field voltage, else they are held."""
     drive = vehicle.drive
-    if drive is None:
+    if not isinstance(drive, Drive):
         return
     point = operating_point(vehicle, speed)
+    commanded = {command["target"] for command in control["commands"]} if control else set()
+    field = {
+        "resistance": drive.field_resistance,
+        "inductance": drive.field_inductance,
+        "voltage_max": drive.field_voltage_max,
+    }
     for axle in wheels:
         for side, _ in SIDES:
+            name = f"{axle.name}.{side}"
             yield {
-                "name": f"{axle.name}.{side}",
+                "name": name,
                 "body": axle.name,
                 "rotor": side,
                 "armature_resistance": drive.armature_resistance,
                 "armature_inductance": drive.armature_inductance,
                 "emf_constant": drive.emf_constant,
                 "field_current": point.field_current,
+                "field": field if f"{name}.field_voltage" in commanded else None,
                 "armature_voltage": point.armature_voltage,
                 "armature_voltage_max": drive.armature_voltage_max,
-                "gear_ratio": drive.gear_ratio,
-                "gear_sense": -1.0,  # one stage of spur gears turns the motor against the wheel
-                "rotor_inertia": drive.rotor_inertia,
-                "rotor_damping": drive.rotor_damping,
-                "transmission_stiffness": drive.transmission_stiffness,
-                "transmission_damping": drive.transmission_damping,
+                **_transmission(drive),
             }
+
+
+def _induction_drives(vehicle: Vehicle, wheels: tuple[Axle, ...], speed: float) -> Iterator[Spec]:
+    drive = vehicle.drive
+    if not isinstance(drive, InductionDrive):
+        return
+    point = induction_point(vehicle, speed)
+    for axle in wheels:
+        for side, _ in SIDES:
+            yield {
+                "name": f"{axle.name}.{side}",
+                "body": axle.name,
+                "rotor": side,
+                "motor": {key: getattr(drive, key) for key in CIRCUIT},
+                "control": {
+                    "model": None,
+                    "torque_bandwidth": drive.torque_bandwidth,
+                    "flux_bandwidth": drive.flux_bandwidth,
+                    "flux_rated": drive.rotor_flux_rated,
+                    "current_max": drive.current_max,
+                    "voltage_max": drive.voltage_max,
+                    "flux_share": drive.flux_share,
+                },
+                "torque_command": point.torque_command,
+                "transmission": _transmission(drive),
+            }
+
+
+def _transmission(drive: Transmission) -> Spec:
+    return {
+        "gear_ratio": drive.gear_ratio,
+        "gear_sense": -1.0,  # one stage of spur gears turns the motor against the wheel
+        "rotor_inertia": drive.rotor_inertia,
+        "rotor_damping": drive.rotor_damping,
+        "transmission_stiffness": drive.transmission_stiffness,
+        "transmission_damping": drive.transmission_damping,
+    }
 
 
 def _drag(vehicle: Vehicle, headwind: float) -> Spec | None:

@@ -21,6 +21,10 @@ Status = Literal["repo", "memory", "derived", "design"]
 project's own choice."""
 
 
+TAG = "kind:"
+"""Beginning of the tag of a table that comes in several kinds; it is no key of a file."""
+
+
 class Record(BaseModel):
     """Immutable table of a file; unknown keys are refused."""
 
@@ -127,12 +131,12 @@ def _item_unit(annotation: Any) -> str | None:
 
 
 def _problem(item: Any, model: type[BaseModel]) -> Problem:
-    loc = tuple(item["loc"])
+    loc = tuple(part for part in item["loc"] if not str(part).startswith(TAG))
     key = ".".join(str(part) for part in loc)
     context = item.get("ctx", {})
     match item["type"]:
         case "extra_forbidden":
-            parent = _model_at(loc[:-1], model)
+            parent = _model_at(tuple(item["loc"])[:-1], model)
             known = list(parent.model_fields) if parent else []
             return Problem(key, item["input"], "is not a known key", nearest(str(loc[-1]), known))
         case "missing":
@@ -141,6 +145,9 @@ def _problem(item: Any, model: type[BaseModel]) -> Problem:
             return Problem(key, item["input"], "must be positive", "give a value above zero")
         case "greater_than_equal":
             return Problem(key, item["input"], "must not be negative", "give zero or more")
+        case "union_tag_invalid":
+            tags = str(context.get("expected_tags", "")).replace(TAG, "")
+            return Problem(f"{key}.kind", context.get("tag", "").removeprefix(TAG), "is not known", f"use {tags}")
         case "literal_error":
             return Problem(key, item["input"], "is not known", f"use {context.get('expected', '')}")
         case _:
@@ -156,11 +163,20 @@ def _model_at(loc: Sequence[int | str], model: type[BaseModel]) -> type[BaseMode
     """The model that `loc` leads to, None where that is no model."""
     candidates: list[Any] = [model]
     for part in loc:
+        if str(part).startswith(TAG):
+            candidates = [c for c in candidates if _kind(c) == str(part).removeprefix(TAG)]
+            continue
         inside = [c for c in candidates if isinstance(c, type) and issubclass(c, BaseModel)]
         if inside:
             field = inside[0].model_fields.get(str(part))
             candidates = _members(field.annotation) if field else []
     return next((c for c in candidates if isinstance(c, type) and issubclass(c, BaseModel)), None)
+
+
+def _kind(candidate: Any) -> Any:
+    """The kind that a record is of by default, None for one that has no kinds."""
+    field = candidate.model_fields.get("kind") if hasattr(candidate, "model_fields") else None
+    return field.default if field else None
 
 
 def _members(annotation: Any) -> list[Any]:

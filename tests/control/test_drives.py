@@ -7,11 +7,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
 from scipy.signal import lsim
 
 from klingel import library
 from klingel.drives import (
     DriveTransfer,
+    Rational,
     WheelPair,
     field_current,
     operating_point,
@@ -183,6 +185,35 @@ def test_signs_gv_minus_gw_plus() -> None:
 
 def test_python_control_reads_them() -> None:
     control = pytest.importorskip("control")
-    plant = TRANSFER.speed_plant(PAIR).to_control()
-    assert isinstance(plant, control.TransferFunction)
-    assert plant(40j) == pytest.approx(TRANSFER.speed_plant(PAIR)(40j))
+    named = {
+        "Gu": (TRANSFER.Gu, "Va", "TOUT"),
+        "Gv": (TRANSFER.Gv, "wOUT", "TOUT"),
+        "(27)": (TRANSFER.torque_plant(PAIR), "u", "Td"),
+        "current": (TRANSFER.current_plant(PAIR), "u", "Id"),
+        "(29)": (TRANSFER.speed_plant(PAIR), "u", "wd"),
+    }
+    for transfer, of, to in named.values():
+        plant = transfer.to_control()
+        assert isinstance(plant, control.TransferFunction)
+        assert (plant.input_labels, plant.output_labels) == ([of], [to])
+        assert plant(40j) == pytest.approx(transfer(40j))
+
+
+def test_two_inputs_of_eqs_24_25_and_28() -> None:
+    """Each term against its formula, the controllers with a pole of their own; python-control takes both inputs."""
+    control = pytest.importorskip("control")
+    s = 40j
+    k = Rational(Polynomial([0.02, 0.001]), Polynomial([1.0, 0.01]))
+    gu, gv, kc = TRANSFER.Gu(s), TRANSFER.Gv(s), k(s)
+    wanted = [
+        (TRANSFER.open_loop(), "u", gu, gv),
+        (TRANSFER.torque_loop(k), "Td_command", gu * kc / (1.0 + gu * kc), gv / (1.0 + gu * kc)),
+        (TRANSFER.speed_loop(k), "wd_command", gu * kc, gv - gu * kc),
+    ]
+    for loop, name, command, speed in wanted:
+        assert loop.command(s) == pytest.approx(command)
+        assert loop.speed(s) == pytest.approx(speed)
+        system = loop.to_control()
+        assert isinstance(system, control.TransferFunction)
+        assert (system.input_labels, system.output_labels) == ([name, "wd"], ["Td"])
+        np.testing.assert_allclose(system(s)[0], [command, speed])

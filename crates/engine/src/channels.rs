@@ -2,7 +2,7 @@
 //! Forces Q and Y act on the rail (down, right), X on the wheel (forward); all in the local track frame.
 #![allow(non_snake_case)] // monogram notation
 
-use crate::model::{Body, Model};
+use crate::model::{Body, FieldIn, Model};
 use crate::motion::{self, Motion};
 use crate::rates::{Loads, Workspace};
 use crate::wheel_rail::WheelState;
@@ -47,8 +47,20 @@ const WHEEL: [(&str, &str); 15] = [
     ("creep_y", "-"),
 ];
 
-const DRIVE: [(&str, &str); 4] =
-    [("armature_current", "A"), ("armature_voltage", "V"), ("motor_speed", "rad/s"), ("shaft_torque", "N m")];
+const ARMATURE: [(&str, &str); 2] = [("armature_current", "A"), ("armature_voltage", "V")];
+
+const FIELD: [(&str, &str); 2] = [("field_current", "A"), ("field_voltage", "V")];
+
+const INDUCTION: [(&str, &str); 6] = [
+    ("torque_command", "N m"),
+    ("air_gap_torque", "N m"),
+    ("current_d", "A"),
+    ("current_q", "A"),
+    ("rotor_flux", "V s"),
+    ("stator_voltage", "V"),
+];
+
+const SHAFT: [(&str, &str); 2] = [("motor_speed", "rad/s"), ("shaft_torque", "N m")];
 
 const ACTUATOR: [(&str, &str); 3] = [("force", "N"), ("command", "N"), ("stroke", "m")];
 
@@ -60,7 +72,19 @@ pub fn list(m: &Model) -> Vec<Channel> {
     let mut channels = Vec::new();
     channels.extend(m.bodies.iter().flat_map(|b| of(&b.name, &BODY)));
     channels.extend(m.wheels.iter().flat_map(|w| of(&w.name, &WHEEL)));
-    channels.extend(m.drives.iter().flat_map(|d| of(&d.name, &DRIVE)));
+    for motor in &m.dc_motors {
+        let name = &m.drives[motor.drive].name;
+        channels.extend(of(name, &ARMATURE));
+        if matches!(motor.field, FieldIn::Moved { .. }) {
+            channels.extend(of(name, &FIELD));
+        }
+        channels.extend(of(name, &SHAFT));
+    }
+    for motor in &m.induction_motors {
+        let name = &m.drives[motor.drive].name;
+        channels.extend(of(name, &INDUCTION));
+        channels.extend(of(name, &SHAFT));
+    }
     channels.extend(m.actuators.iter().flat_map(|a| of(&a.name, &ACTUATOR)));
     if m.hold.is_some() {
         channels.push(("hold.force".into(), "N"));
@@ -81,8 +105,21 @@ pub fn fill<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &Workspace<S>, row: 
     for (wheel, state) in m.wheels.iter().zip(&w.wheels) {
         put(&wheel_row(state, x[m.rotors[wheel.rotor].state]));
     }
-    for (drive, state) in m.drives.iter().zip(&w.drives) {
-        put(&[x[drive.state], drive.armature_voltage(inputs), x[drive.state + 1], state.shaft_torque]);
+    for motor in &m.dc_motors {
+        put(&[x[motor.state], motor.armature_voltage(inputs)]);
+        if let Some(voltage) = motor.field_voltage(inputs) {
+            put(&[motor.field_current(x), voltage]);
+        }
+        put(&[x[m.drives[motor.drive].state], w.drives[motor.drive].shaft_torque]);
+    }
+    for (motor, put_out) in m.induction_motors.iter().zip(&w.inverters) {
+        let (drive, state) = (&m.drives[motor.drive], &w.drives[motor.drive]);
+        let at_wheel = state.air_gap_torque / drive.law.gear_ratio;
+        let (inside, _) = motor.read(x);
+        put(&[inputs[motor.input], at_wheel]);
+        put(&inside.current);
+        put(&[amplitude(inside.flux), amplitude(put_out.voltage)]);
+        put(&[x[drive.state], state.shaft_torque]);
     }
     for actuator in &m.actuators {
         put(&[x[actuator.state], inputs[actuator.input], w.joints[actuator.joint].u.x()]);
@@ -90,6 +127,12 @@ pub fn fill<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &Workspace<S>, row: 
     if m.hold.is_some() {
         put(&[w.hold_force]);
     }
+}
+
+/// Length of a pair; its slope is nil at zero.
+fn amplitude<S: Scalar>([d, q]: [S; 2]) -> S {
+    let square = d.square() + q.square();
+    S::select(S::zero().lt(square), square, S::one()).sqrt() * S::select(S::zero().lt(square), S::one(), S::zero())
 }
 
 fn body_row<S: Scalar>(

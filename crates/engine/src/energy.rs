@@ -3,7 +3,7 @@
 #![allow(non_snake_case)] // monogram notation
 
 use crate::channels::Channel;
-use crate::model::{Body, Course, Model};
+use crate::model::{Body, Course, FieldIn, Model};
 use crate::newton_euler::gravity;
 use crate::rates::Workspace;
 use klingel_physics::math::Vec3;
@@ -22,6 +22,9 @@ pub enum Account {
     // out of it
     Regeneration,
     CopperArmature,
+    CopperField,
+    CopperStator,
+    CopperRotor,
     MotorFriction,
     Transmission,
     RunningResistance,
@@ -33,12 +36,13 @@ pub enum Account {
 }
 
 use Account::{
-    Actuators, ContactDamping, ContactElastic, ContactFriction, CopperArmature, Gradient, Guides, Hold, MotorFriction,
-    Rails, Regeneration, RunningResistance, Suspension, Traction, Transmission, Wind,
+    Actuators, ContactDamping, ContactElastic, ContactFriction, CopperArmature, CopperField, CopperRotor, CopperStator,
+    Gradient, Guides, Hold, MotorFriction, Rails, Regeneration, RunningResistance, Suspension, Traction, Transmission,
+    Wind,
 };
 
 /// Name and sign in the balance: in - out - growth of what is stored = residual.
-const ACCOUNTS: [(Account, &str, f64); 16] = [
+const ACCOUNTS: [(Account, &str, f64); 19] = [
     (Traction, "traction", 1.0),
     (Actuators, "actuators", 1.0),
     (Hold, "hold", 1.0),
@@ -48,6 +52,9 @@ const ACCOUNTS: [(Account, &str, f64); 16] = [
     (Guides, "guides", 1.0),
     (Regeneration, "regeneration", -1.0),
     (CopperArmature, "copper_armature", -1.0),
+    (CopperField, "copper_field", -1.0),
+    (CopperStator, "copper_stator", -1.0),
+    (CopperRotor, "copper_rotor", -1.0),
     (MotorFriction, "motor_friction", -1.0),
     (Transmission, "transmission", -1.0),
     (RunningResistance, "running_resistance", -1.0),
@@ -82,11 +89,15 @@ impl Energy {
     pub fn new(m: &Model) -> Self {
         let excited = |part: &str| m.run.excitations.iter().any(|e| e.input.contains(part));
         let graded = matches!(&m.track, Course::Laid(alignment) if alignment.climbs());
-        let guided: Vec<usize> = (0..m.bodies.len()).filter(|&i| !m.bodies[i].pitches).collect();
+        let guided: Vec<usize> =
+            (0..m.bodies.len()).filter(|&i| !m.bodies[i].pitches || m.bodies[i].guided != [false; 6]).collect();
         let damped = (0..m.bushings.len()).filter(|&i| m.bushings[i].1.damps()).collect();
-        let (driven, wheels, blown) = (!m.drives.is_empty(), !m.wheels.is_empty(), excited("wind."));
+        let (wheels, blown) = (!m.wheels.is_empty(), excited("wind."));
         let has = |account: Account| match account {
-            Traction | Regeneration | CopperArmature | MotorFriction | Transmission => driven,
+            Traction | Regeneration | MotorFriction | Transmission => !m.drives.is_empty(),
+            CopperArmature => !m.dc_motors.is_empty(),
+            CopperField => m.dc_motors.iter().any(|d| matches!(d.field, FieldIn::Moved { .. })),
+            CopperStator | CopperRotor => !m.induction_motors.is_empty(),
             Actuators => !m.actuators.is_empty(),
             Hold => m.hold.is_some(),
             Wind => blown,
@@ -175,16 +186,33 @@ impl Energy {
     }
 }
 
-/// Electrical power, copper, friction of the rotors, damping of the shafts.
+/// Electrical power and copper of the motors, friction of their rotors, damping of the shafts.
 fn drives(m: &Model, x: &[f64], inputs: &[f64], w: &Workspace<f64>, book: &mut impl FnMut(Account, f64)) {
+    let electrical = |watts: f64| (if watts > 0.0 { Traction } else { Regeneration }, watts.abs());
+    for motor in &m.dc_motors {
+        let current = x[motor.state];
+        let mut taken = motor.armature_voltage(inputs) * current;
+        book(CopperArmature, motor.law.dissipated(current));
+        if let (FieldIn::Moved { law, state, .. }, Some(voltage)) = (&motor.field, motor.field_voltage(inputs)) {
+            taken += voltage * x[*state];
+            book(CopperField, law.dissipated(x[*state]));
+        }
+        let (account, watts) = electrical(taken);
+        book(account, watts);
+    }
+    for (motor, excited) in m.induction_motors.iter().zip(&w.inverters) {
+        let (state, _) = motor.read(x);
+        let [stator, rotor] = motor.law.dissipated(&state);
+        book(CopperStator, stator);
+        book(CopperRotor, rotor);
+        let (account, watts) = electrical(motor.law.input_power(&state, excited.voltage));
+        book(account, watts);
+    }
     for drive in &m.drives {
-        let [current, motor_speed, _] = [0, 1, 2].map(|i| x[drive.state + i]);
         let wheel_speed = x[m.rotors[drive.rotor].state] + w.motions[drive.body].w_B.y();
-        let electrical = drive.armature_voltage(inputs) * current;
-        book(if electrical > 0.0 { Traction } else { Regeneration }, electrical.abs());
-        book(CopperArmature, drive.law.copper(current));
-        book(MotorFriction, drive.law.friction(motor_speed));
-        book(Transmission, drive.law.transmission(motor_speed, wheel_speed));
+        let [bearings, shaft] = drive.law.dissipated(x[drive.state], wheel_speed);
+        book(MotorFriction, bearings);
+        book(Transmission, shaft);
     }
 }
 
@@ -228,11 +256,17 @@ fn stored(m: &Model, x: &[f64], w: &Workspace<f64>) -> [f64; STORED.len()] {
         kinetic += 0.5 * rotor.inertia * x[rotor.state].powi(2);
     }
     for drive in &m.drives {
-        let absolute = x[drive.state + 1] * drive.gear_sense - w.motions[drive.body].w_B.y();
+        let absolute = x[drive.state] * drive.gear_sense - w.motions[drive.body].w_B.y();
         kinetic += 0.5 * drive.law.rotor_inertia * absolute * absolute;
-        elastic += drive.law.elastic(x[drive.state + 2]);
-        magnetic += drive.law.magnetic(x[drive.state]);
+        elastic += drive.law.stored(x[drive.state + 1]);
     }
+    for motor in &m.dc_motors {
+        magnetic += motor.law.stored(x[motor.state]);
+        if let FieldIn::Moved { law, state, .. } = &motor.field {
+            magnetic += law.stored(x[*state]);
+        }
+    }
+    magnetic += m.induction_motors.iter().map(|motor| motor.law.stored(&motor.read(x).0)).sum::<f64>();
     for (joint, law) in &m.bushings {
         let joint = &w.joints[*joint];
         elastic += law.stored(joint.u, joint.angle);

@@ -1,7 +1,7 @@
 //! The start of a run: the design position, and every body at rest relative to the others while the vehicle rolls.
 
 use crate::error::EngineError;
-use crate::model::Model;
+use crate::model::{FieldIn, Model};
 use crate::steady::{Steady, steady};
 use crate::wiring::Wiring;
 
@@ -29,7 +29,18 @@ pub fn design_state(m: &Model) -> Vec<f64> {
         x[m.rotors[wheel.rotor].state] = m.speed / wheel.radius;
     }
     for drive in &m.drives {
-        x[drive.state + 1] = x[m.rotors[drive.rotor].state] / drive.law.gear_ratio;
+        x[drive.state] = x[m.rotors[drive.rotor].state] / drive.law.gear_ratio;
+    }
+    for motor in &m.dc_motors {
+        if let FieldIn::Moved { law, state, input, .. } = &motor.field {
+            x[*state] = m.inputs[*input] / law.resistance;
+        }
+    }
+    for motor in &m.induction_motors {
+        let drive = &m.drives[motor.drive];
+        let torque = drive.law.gear_ratio * m.inputs[motor.input];
+        let (state, control) = motor.control.steady_state(torque, x[drive.state]);
+        motor.write(&state, &control, &mut x);
     }
     x
 }
@@ -72,7 +83,7 @@ pub(crate) fn scale_speeds(m: &Model, x: &mut [f64], ratio: f64) {
         x[body.velocities()].iter_mut().for_each(|v| *v *= ratio);
     }
     m.rotors.iter().for_each(|r| x[r.state] *= ratio);
-    m.drives.iter().for_each(|d| x[d.state + 1] *= ratio);
+    m.drives.iter().for_each(|d| x[d.state] *= ratio);
 }
 
 /// Lets the whole vehicle sink until the wheels carry its weight on average: within reach of Newton.
@@ -111,7 +122,7 @@ fn roll_where_they_touch(m: &Model, sink: f64, x: &mut [f64]) {
             let radius = patches.iter().map(|p| p.normal_force * p.radius).sum::<f64>() / load;
             x[m.rotors[wheel.rotor].state] = m.speed / radius;
             for drive in m.drives.iter().filter(|d| d.rotor == wheel.rotor) {
-                x[drive.state + 1] = m.speed / radius / drive.law.gear_ratio;
+                x[drive.state] = m.speed / radius / drive.law.gear_ratio;
             }
         }
     }

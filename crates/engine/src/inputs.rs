@@ -1,7 +1,7 @@
 //! The inputs of a model, in their order: what drives and actuators are commanded, the held speed, and disturbances.
 //! Their nominal values belong to the model; a run adds commands and excitations, a linear model differentiates by them.
 
-use crate::model::Model;
+use crate::model::{DcMotorIn, FieldIn, Model};
 use klingel_physics::Scalar;
 
 /// Name and unit of one input.
@@ -29,7 +29,7 @@ pub struct Places {
 }
 
 impl Places {
-    /// Voltages of the drives and forces of the actuators come first.
+    /// Voltages and torques of the motors and forces of the actuators come first.
     pub fn new(commands: usize, wheels: usize, hold: bool) -> Self {
         let (rails, track) = (commands, commands + RAIL.len() * wheels);
         let wind = track + TRACK.len();
@@ -42,7 +42,12 @@ impl Places {
 pub fn list(m: &Model) -> Vec<Input> {
     let own = |parts: &[(&str, &'static str)]| parts.iter().map(|(p, u)| ((*p).to_string(), *u)).collect::<Vec<_>>();
     let rails = |name: &str| RAIL.iter().map(|(part, unit)| (format!("{name}.{part}"), *unit)).collect::<Vec<_>>();
-    let mut inputs: Vec<Input> = m.drives.iter().map(|d| (format!("{}.armature_voltage", d.name), "V")).collect();
+    let of_motor = |drive: usize, part: &str| format!("{}.{part}", m.drives[drive].name);
+    let moved = |d: &&DcMotorIn| matches!(d.field, FieldIn::Moved { .. });
+    let dc = m.dc_motors.iter();
+    let mut inputs: Vec<Input> = dc.clone().map(|d| (of_motor(d.drive, "armature_voltage"), "V")).collect();
+    inputs.extend(dc.filter(moved).map(|d| (of_motor(d.drive, "field_voltage"), "V")));
+    inputs.extend(m.induction_motors.iter().map(|d| (of_motor(d.drive, "torque_command"), "N m")));
     inputs.extend(m.actuators.iter().map(|a| (format!("{}.force", a.name), "N")));
     inputs.extend(m.wheels.iter().flat_map(|w| rails(&w.name)));
     inputs.extend(own(&TRACK));

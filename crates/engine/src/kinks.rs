@@ -2,7 +2,7 @@
 //! How near is told as a part of the law's own range.
 
 use crate::control::{Diagram, Memory};
-use crate::model::Model;
+use crate::model::{FieldIn, Model};
 use crate::pass::Pass;
 
 /// Nearer than this part of its range an element is named.
@@ -30,8 +30,20 @@ pub fn of_plant(m: &Model, pass: &Pass<f64>) -> Vec<String> {
         let stroke = pass.work.joints[e.joint].u.x().abs() / e.law.stroke;
         say(Some(stroke - 1.0), &e.name, "its end stop");
     }
-    for e in &m.drives {
-        say(Some(pass.inputs[e.input].abs() / e.voltage_max - 1.0), &e.name, "the largest armature voltage");
+    for e in &m.dc_motors {
+        let name = &m.drives[e.drive].name;
+        say(Some(pass.inputs[e.input].abs() / e.voltage_max - 1.0), name, "the largest armature voltage");
+        if let FieldIn::Moved { voltage_max, input, .. } = e.field {
+            say(Some(pass.inputs[input].abs() / voltage_max - 1.0), name, "the largest field voltage");
+        }
+    }
+    for (e, put_out) in m.induction_motors.iter().zip(&pass.work.inverters) {
+        let name = &m.drives[e.drive].name;
+        let [voltage, current] = [put_out.voltage, e.read(&pass.x).0.current].map(|[d, q]| d.hypot(q));
+        say(Some(voltage / e.control.voltage_max - 1.0), name, "the inverter's largest voltage");
+        say(Some(current / e.control.current_max - 1.0), name, "the largest stator current");
+        let speed = pass.x[m.drives[e.drive].state].abs() * e.control.model.pole_pairs;
+        say(Some(speed / e.control.weakening_speed() - 1.0), name, "the speed of field weakening");
     }
     for (wheel, state) in m.wheels.iter().zip(&pass.work.wheels) {
         let load: f64 = state.normal.iter().sum();

@@ -6,7 +6,10 @@ use crate::spec::RunSpec;
 use klingel_physics::Scalar;
 use klingel_physics::contact::creep::FallingFriction;
 use klingel_physics::contact::{ContactTable, CreepForce};
-use klingel_physics::drives::{self, Actuator, RunningResistance};
+use klingel_physics::drives::{
+    Actuator, DcField, DcMotor, FieldOriented, FieldOrientedState, InductionMotor, InductionState, RunningResistance,
+    Transmission,
+};
 use klingel_physics::elements::{Bushing, Maxwell, Stop};
 use klingel_physics::track::{Adhesion, Alignment, TrackFrame, UniformTrack};
 use std::ops::Range;
@@ -33,6 +36,8 @@ pub struct Model {
     pub actuators: Vec<ActuatorIn>,
     pub wheels: Vec<Wheel>,
     pub drives: Vec<Drive>,
+    pub dc_motors: Vec<DcMotorIn>,
+    pub induction_motors: Vec<InductionMotorIn>,
     pub drag: Option<(usize, RunningResistance)>,
     pub hold: Option<Hold>,
     /// Friction along the track, in place of that of the wheels.
@@ -88,6 +93,8 @@ pub struct Body {
     /// Centre of mass in the design frame \[m\].
     pub position: [f64; 3],
     pub pitches: bool,
+    /// Coordinates (x, y, z, roll, pitch, yaw) that a guide keeps as they are; that of x keeps its velocity.
+    pub guided: [bool; 6],
     /// First of its states: s, y, z, roll, (pitch,) yaw, then the velocities vx, vy, vz in T and wx, (wy,) wz in B.
     pub state: usize,
 }
@@ -160,18 +167,50 @@ pub struct Wheel {
     pub stick: Option<usize>,
 }
 
+/// A motor's rotor, gearbox and shaft on one wheel; the motor itself is in `dc_motors` or `induction_motors`.
 #[derive(Clone, Debug)]
 pub struct Drive {
     pub name: String,
     pub body: usize,
     pub rotor: usize,
-    pub law: drives::Drive,
+    pub law: Transmission,
     /// +1 where the motor turns with the wheel, -1 against it.
     pub gear_sense: f64,
+    /// Motor speed, shaft twist.
+    pub state: usize,
+}
+
+#[derive(Clone, Debug)]
+pub struct DcMotorIn {
+    /// Which of `drives` it drives.
+    pub drive: usize,
+    pub law: DcMotor,
     /// \[V\]
     pub voltage_max: f64,
-    /// Armature current, motor speed, shaft twist.
+    pub field: FieldIn,
+    /// Armature current.
     pub state: usize,
+    pub input: usize,
+}
+
+/// The field current of a DC motor.
+#[derive(Clone, Debug)]
+pub enum FieldIn {
+    /// Constant in a run \[A\].
+    Held(f64),
+    /// A state that follows the field voltage.
+    Moved { law: DcField, voltage_max: f64, state: usize, input: usize },
+}
+
+#[derive(Clone, Debug)]
+pub struct InductionMotorIn {
+    /// Which of `drives` it drives.
+    pub drive: usize,
+    pub law: InductionMotor,
+    pub control: FieldOriented,
+    /// Currents d, q, rotor fluxes d, q, flux of the control's model, integrals d, q.
+    pub state: usize,
+    /// Air-gap torque as seen at the wheel.
     pub input: usize,
 }
 
@@ -194,11 +233,74 @@ impl Body {
     }
 }
 
-impl Drive {
-    /// What the inverter puts out \[V\]: the commanded voltage within +-VaMax.
+impl InductionMotorIn {
+    /// Names and units of its states.
+    pub const STATES: [(&str, &str); 7] = [
+        ("current_d", "A"),
+        ("current_q", "A"),
+        ("rotor_flux_d", "V s"),
+        ("rotor_flux_q", "V s"),
+        ("flux_model", "V s"),
+        ("integral_d", "V"),
+        ("integral_q", "V"),
+    ];
+
+    /// The states of the motor and of its control.
+    #[inline]
+    pub fn read<S: Scalar>(&self, x: &[S]) -> (InductionState<S>, FieldOrientedState<S>) {
+        let x = &x[self.state..];
+        let motor = InductionState { current: [x[0], x[1]], flux: [x[2], x[3]] };
+        (motor, FieldOrientedState { flux: x[4], integral: [x[5], x[6]] })
+    }
+
+    /// Writes states, or their rates, in the order of `STATES`.
+    #[inline]
+    pub fn write<S: Scalar>(&self, motor: &InductionState<S>, control: &FieldOrientedState<S>, x: &mut [S]) {
+        let values = [motor.current, motor.flux, [control.flux, control.integral[0]]];
+        x[self.state..self.state + 6].copy_from_slice(values.as_flattened());
+        x[self.state + 6] = control.integral[1];
+    }
+}
+
+impl DcMotorIn {
+    /// What the chopper puts out \[V\]: the commanded voltage within +-VaMax.
     #[inline]
     pub fn armature_voltage<S: Scalar>(&self, inputs: &[S]) -> S {
         inputs[self.input].clamp(-self.voltage_max, self.voltage_max)
+    }
+
+    /// If \[A\]
+    #[inline]
+    pub fn field_current<S: Scalar>(&self, x: &[S]) -> S {
+        match self.field {
+            FieldIn::Held(current) => S::constant(current),
+            FieldIn::Moved { state, .. } => x[state],
+        }
+    }
+
+    /// What is put on the field winding \[V\], the commanded voltage within +-VfMax; None where the field is held.
+    #[inline]
+    pub fn field_voltage<S: Scalar>(&self, inputs: &[S]) -> Option<S> {
+        match self.field {
+            FieldIn::Held(_) => None,
+            FieldIn::Moved { voltage_max, input, .. } => Some(inputs[input].clamp(-voltage_max, voltage_max)),
+        }
+    }
+}
+
+impl Body {
+    /// The states of coordinate `c` (x, y, z, roll, pitch, yaw) and of its rate; none of the pitch of a frame without.
+    pub fn coordinate(&self, c: usize) -> Option<[usize; 2]> {
+        if self.pitches {
+            return Some([self.state + c, self.state + 6 + c]);
+        }
+        let c = [0, 1, 2, 3, usize::MAX, 4][c];
+        (c < 5).then(|| [self.state + c, self.state + 5 + c])
+    }
+
+    /// States of coordinates and of rates that a guide keeps.
+    pub fn kept(&self) -> impl Iterator<Item = [usize; 2]> {
+        (0..6).filter(|&c| self.guided[c]).filter_map(|c| self.coordinate(c))
     }
 }
 

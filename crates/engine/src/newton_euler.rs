@@ -9,6 +9,7 @@ use klingel_physics::math::Vec3;
 
 /// m (v' + w_track x v) = F in T;  I w' + h' + w x (I w + h) = M in B, with the rotors' own momentum h along y.
 /// A rotor turns forward about -y: J w_r' = its torque; the motor's rotor turns with `gear_sense` times that.
+/// A guide takes the force or moment along what it keeps.
 pub fn newton_euler<S: Scalar>(m: &Model, w: &mut Workspace<S>, x: &[S], dx: &mut [S]) {
     for (rotor, torque) in m.rotors.iter().zip(&w.rotor_torque) {
         dx[rotor.state] = *torque / rotor.inertia;
@@ -16,7 +17,7 @@ pub fn newton_euler<S: Scalar>(m: &Model, w: &mut Workspace<S>, x: &[S], dx: &mu
         w.rotor_reaction[rotor.body] += *torque;
     }
     for (drive, state) in m.drives.iter().zip(&w.drives) {
-        let motor_speed = x[drive.state + 1] * drive.gear_sense - w.motions[drive.body].w_B.y();
+        let motor_speed = x[drive.state] * drive.gear_sense - w.motions[drive.body].w_B.y();
         w.motor_momentum[drive.body] += motor_speed * drive.law.rotor_inertia;
         w.motor_reaction[drive.body] += state.net_rotor_torque * drive.gear_sense;
     }
@@ -43,11 +44,17 @@ pub fn newton_euler<S: Scalar>(m: &Model, w: &mut Workspace<S>, x: &[S], dx: &mu
             d[5..8].copy_from_slice(&acceleration.0);
             (d[8], d[9]) = (turning.x(), turning.z());
         }
+        for [coordinate, rate] in body.kept() {
+            dx[rate] = S::zero();
+            if coordinate != body.state {
+                dx[coordinate] = S::zero();
+            }
+        }
     }
     for drive in &m.drives {
         let body = &m.bodies[drive.body];
         let pitch_acceleration = dx[body.state + 10];
-        dx[drive.state + 1] += pitch_acceleration * drive.gear_sense;
+        dx[drive.state] += pitch_acceleration * drive.gear_sense;
     }
 }
 

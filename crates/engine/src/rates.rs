@@ -10,6 +10,7 @@ use crate::suspension::{self, JointState};
 use crate::traction::{self, DriveState};
 use crate::wheel_rail::{WheelState, wheels};
 use klingel_physics::Scalar;
+use klingel_physics::drives::Excited;
 use klingel_physics::math::Vec3;
 
 /// Forces and moments about the centre of mass: from joints resolved in W, from the track resolved in T.
@@ -29,6 +30,8 @@ pub struct Workspace<S> {
     pub joints: Vec<JointState<S>>,
     pub wheels: Vec<WheelState<S>>,
     pub drives: Vec<DriveState<S>>,
+    /// Voltage and frame of every induction motor.
+    pub inverters: Vec<Excited<S>>,
     /// Torque on each rotor, forward positive \[N m\].
     pub rotor_torque: Vec<S>,
     /// Momentum of the rotors of each body \[kg m2/s\], and the torque they take \[N m\].
@@ -53,6 +56,7 @@ impl<S: Scalar> Workspace<S> {
             joints: vec![JointState::default(); m.joints.len()],
             wheels: vec![WheelState::default(); m.wheels.len()],
             drives: vec![DriveState::default(); m.drives.len()],
+            inverters: vec![Excited::default(); m.induction_motors.len()],
             rotor_torque: vec![S::zero(); m.rotors.len()],
             rotor_momentum: vec![S::zero(); bodies],
             rotor_reaction: vec![S::zero(); bodies],
@@ -86,7 +90,9 @@ pub fn rates<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>, 
     suspension::joints(m, w);
     suspension::elements(m, x, inputs, w, dx);
     suspension::apply(m, w);
-    traction::motors(m, x, inputs, w, dx);
+    traction::dc_motors(m, x, inputs, w, dx);
+    traction::induction_motors(m, x, inputs, w, dx);
+    traction::transmissions(m, x, w, dx);
     traction::along_track(m, x, inputs, w, dx);
     traction::wind(m, inputs, w);
     newton_euler(m, w, x, dx);

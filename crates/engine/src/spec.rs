@@ -37,6 +37,8 @@ pub struct Spec {
     #[serde(default)]
     pub drives: Vec<DriveSpec>,
     #[serde(default)]
+    pub induction_drives: Vec<InductionDriveSpec>,
+    #[serde(default)]
     pub drag: Option<DragSpec>,
     #[serde(default)]
     pub hold: Option<HoldSpec>,
@@ -109,6 +111,10 @@ pub struct BodySpec {
     /// False for the non-spinning frame of a solid wheelset: it has no pitch of its own.
     #[serde(default = "yes")]
     pub pitches: bool,
+    /// Motions that a guide keeps as they are, of x, y, z, roll, pitch, yaw (roller rig): the place, and along x the
+    /// speed. On straight level track only.
+    #[serde(default)]
+    pub guided: Vec<String>,
     /// Axisymmetric parts that spin about the body's y axis (wheels; the solid wheelset itself).
     #[serde(default)]
     pub rotors: Vec<RotorSpec>,
@@ -356,12 +362,97 @@ pub struct DriveSpec {
     pub armature_inductance: f64,
     /// Ke \[V s/(rad A)\]
     pub emf_constant: f64,
-    /// If, constant in a run \[A\].
+    /// If \[A\]: constant in a run unless `field` lets it move.
     pub field_current: f64,
+    #[serde(default)]
+    pub field: Option<FieldSpec>,
     /// Armature voltage while no controller commands it \[V\].
     pub armature_voltage: f64,
     /// VaMax \[V\]; commands beyond it saturate, and the channel shows what is put out.
     pub armature_voltage_max: f64,
+    /// N = wheel speed over motor speed \[-\].
+    pub gear_ratio: f64,
+    /// +1 where the motor turns with the wheel, -1 against it.
+    pub gear_sense: f64,
+    /// JM \[kg m2\]
+    pub rotor_inertia: f64,
+    /// CM \[N m s/rad\]
+    pub rotor_damping: f64,
+    /// KOUT \[N m/rad\]
+    pub transmission_stiffness: f64,
+    /// COUT \[N m s/rad\]
+    pub transmission_damping: f64,
+}
+
+/// The field circuit of a DC motor: its current is a state, its voltage an input, Rf If while no controller commands it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FieldSpec {
+    /// Rf \[Ohm\]
+    pub resistance: f64,
+    /// Lf \[H\]
+    pub inductance: f64,
+    /// VfMax \[V\]; commands beyond it saturate, and the channel shows what is put out.
+    pub voltage_max: f64,
+}
+
+/// Induction motor with field-oriented control and inverter, gearbox and elastic transmission.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InductionDriveSpec {
+    /// The driven wheel: `bogie1.wheelset1.left`.
+    pub name: String,
+    pub body: String,
+    pub rotor: String,
+    pub motor: InductionMotorSpec,
+    pub control: FieldOrientedSpec,
+    /// Air-gap torque as seen at the wheel while no controller commands it \[N m\].
+    pub torque_command: f64,
+    pub transmission: TransmissionSpec,
+}
+
+/// Equivalent circuit of one phase (star), rotor values seen from the stator.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InductionMotorSpec {
+    /// Rs \[Ohm\]
+    pub stator_resistance: f64,
+    /// Rr \[Ohm\]
+    pub rotor_resistance: f64,
+    /// Lls \[H\]
+    pub stator_leakage: f64,
+    /// Llr \[H\]
+    pub rotor_leakage: f64,
+    /// Lm \[H\]
+    pub magnetizing_inductance: f64,
+    pub pole_pairs: f64,
+}
+
+/// Control and inverter of an induction drive; amplitudes are peak values of a phase.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FieldOrientedSpec {
+    /// What the control takes the motor for; None: for what it is.
+    #[serde(default)]
+    pub model: Option<InductionMotorSpec>,
+    /// \[1/s\]
+    pub torque_bandwidth: f64,
+    /// \[1/s\]
+    pub flux_bandwidth: f64,
+    /// \[V s\]
+    pub flux_rated: f64,
+    /// \[A\]
+    pub current_max: f64,
+    /// \[V\]
+    pub voltage_max: f64,
+    /// Share of the voltage that the flux may take at speed, 0 to 1.
+    pub flux_share: f64,
+}
+
+/// Gearbox, rotor and elastic shaft, with the names that they have in a `DriveSpec`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TransmissionSpec {
     /// N = wheel speed over motor speed \[-\].
     pub gear_ratio: f64,
     /// +1 where the motor turns with the wheel, -1 against it.

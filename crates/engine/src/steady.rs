@@ -98,7 +98,8 @@ impl<'a> Problem<'a> {
         let reference = &m.bodies[m.reference()];
         let (s_ref, v_ref) = (reference.state, reference.velocities().start);
         // the place along the track is free; without a speed hold the speed of the reference body is given instead
-        let given = |i: &usize| *i == s_ref || (m.hold.is_none() && *i == v_ref);
+        let kept: Vec<usize> = m.bodies.iter().flat_map(|b| b.kept().flatten()).collect();
+        let given = |i: &usize| *i == s_ref || (m.hold.is_none() && *i == v_ref) || kept.contains(i);
         let free = (0..m.state_count()).filter(|i| !given(i)).collect();
         Self { m, wiring, share: 1.0, speed_share: 1.0, free }
     }

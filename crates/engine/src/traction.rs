@@ -1,35 +1,65 @@
 #![allow(non_snake_case)] // monogram notation
 //! Drives and the forces along the track: motors on their body, running resistance, the speed hold.
 
-use crate::model::Model;
+use crate::model::{FieldIn, Model};
 use crate::rates::Workspace;
+use klingel_physics::Scalar;
+use klingel_physics::drives::TransmissionState;
 use klingel_physics::math::Vec3;
-use klingel_physics::{Scalar, drives};
 
-/// What a drive does: torque on the wheel and net torque on the motor's rotor.
+/// What a drive does: torques at the motor and at the wheel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DriveState<S> {
+    /// TM, of the motor on its rotor \[N m\].
+    pub air_gap_torque: S,
     /// TOUT on the wheel \[N m\].
     pub shaft_torque: S,
     /// X = TM - CM wM - N TOUT = JM d(absolute motor speed)/dt \[N m\].
     pub net_rotor_torque: S,
 }
 
-/// Motors: shaft torque on the wheel's rotor; its reaction and that of the motor's rotor on the body (stator, gear case).
-/// Motor and shaft speeds are relative to the body, which itself turns forward at -w_B.y.
-pub fn motors<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>, dx: &mut [S]) {
-    for (drive, state) in m.drives.iter().zip(&mut w.drives) {
+/// DC motors: voltages to currents and air-gap torque, at the speed of the rotor against the stator.
+pub fn dc_motors<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>, dx: &mut [S]) {
+    for motor in &m.dc_motors {
+        let (current, motor_speed) = (x[motor.state], x[m.drives[motor.drive].state]);
+        let field_current = motor.field_current(x);
+        let kt = motor.law.torque_constant(field_current);
+        dx[motor.state] = motor.law.current_rate(current, kt, motor.armature_voltage(inputs), motor_speed);
+        if let (FieldIn::Moved { law, state, .. }, Some(voltage)) = (&motor.field, motor.field_voltage(inputs)) {
+            dx[*state] = law.current_rate(field_current, voltage);
+        }
+        w.drives[motor.drive].air_gap_torque = motor.law.torque(current, kt);
+    }
+}
+
+/// Induction motors with their control and inverter: torque commands to currents, fluxes and air-gap torque.
+pub fn induction_motors<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>, dx: &mut [S]) {
+    for (motor, put_out) in m.induction_motors.iter().zip(&mut w.inverters) {
+        let drive = &m.drives[motor.drive];
+        let ((state, control), motor_speed) = (motor.read(x), x[drive.state]);
+        let command = inputs[motor.input] * drive.law.gear_ratio;
+        let (excited, control_rates) = motor.control.control(&control, state.current, command, motor_speed);
+        let rates = motor.law.rates(&state, excited.voltage, excited.frame_speed, motor_speed);
+        motor.write(&rates, &control_rates, dx);
+        w.drives[motor.drive].air_gap_torque = motor.law.torque(&state);
+        *put_out = excited;
+    }
+}
+
+/// Rotors and shafts: shaft torque on the wheel's rotor; its reaction and that of the motor's rotor on the body (stator,
+/// gear case). Motor and shaft speeds are relative to the body, which itself turns forward at -w_B.y.
+pub fn transmissions<S: Scalar>(m: &Model, x: &[S], w: &mut Workspace<S>, dx: &mut [S]) {
+    for (drive, at) in m.drives.iter().zip(&mut w.drives) {
         let i = drive.state;
         let wheel_speed = x[m.rotors[drive.rotor].state] + w.motions[drive.body].w_B.y();
-        let motor = drives::DriveState { armature_current: x[i], motor_speed: x[i + 1], twist: x[i + 2] };
-        let rates = drive.law.rates(&motor, drive.armature_voltage(inputs), wheel_speed);
-        dx[i] = rates.armature_current;
+        let state = TransmissionState { motor_speed: x[i], twist: x[i + 1] };
+        let rates = drive.law.rates(&state, at.air_gap_torque, wheel_speed);
         // still without the pitch acceleration of the body, which `newton_euler` adds
-        dx[i + 1] = rates.motor_speed;
-        dx[i + 2] = rates.twist;
-        let shaft_torque = drive.law.shaft_torque(&motor, wheel_speed);
-        *state = DriveState { shaft_torque, net_rotor_torque: drive.law.rotor_torque(&motor, shaft_torque) };
-        w.rotor_torque[drive.rotor] += shaft_torque;
+        dx[i] = rates.motor_speed;
+        dx[i + 1] = rates.twist;
+        at.shaft_torque = drive.law.shaft_torque(&state, wheel_speed);
+        at.net_rotor_torque = drive.law.rotor_torque(&state, at.air_gap_torque, at.shaft_torque);
+        w.rotor_torque[drive.rotor] += at.shaft_torque;
     }
 }
 

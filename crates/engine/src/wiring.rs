@@ -33,7 +33,7 @@ impl Wiring {
     pub fn of(m: &Model, diagram: Diagram) -> Result<Self, EngineError> {
         let channels: Vec<Channel> = channels::list(m);
         let mut commanded = inputs::list(m);
-        commanded.truncate(m.drives.len() + m.actuators.len());
+        commanded.truncate(m.places.rails);
         let places = |names: &[String], known: &[Channel], what: &'static str| {
             names.iter().map(|name| find(known, what, name)).collect::<Result<Vec<_>, _>>()
         };

@@ -13,13 +13,13 @@ import numpy as np
 from klingel.control.diagram import Diagram
 from klingel.control.discrete import Section, low_pass, slope_low_pass
 from klingel.control.feedforward import ContactDesign, SteeringGeometry, attack_angle_table
-from klingel.drives import OperatingPoint, operating_point
+from klingel.control.motors import Motors, motors_of
 from klingel.errors import InputError
 from klingel.track import CANT_BASE
 
 if TYPE_CHECKING:
     from klingel.track import Track
-    from klingel.vehicle import Drive, SteeringActuator, Vehicle
+    from klingel.vehicle import SteeringActuator, Vehicle
 
 SPEED = "body.speed"
 BUTTERWORTH = 0.7
@@ -65,10 +65,9 @@ class Plant:
     """The numbers of one vehicle at its speed that a strategy is made from."""
 
     geometry: SteeringGeometry
-    drive: Drive
+    motors: Motors
     steering: SteeringActuator
     radius: float
-    point: OperatingPoint
 
     @classmethod
     def of(cls, vehicle: Vehicle, speed: float) -> Plant:
@@ -77,21 +76,14 @@ class Plant:
             if getattr(vehicle, key) is None:
                 remedy = f"{vehicle.name} is passive; take a vehicle with [drive] and [steering], or no control"
                 raise InputError.single(key, None, "is missing", remedy=remedy)
-        assert vehicle.drive is not None
         assert vehicle.steering is not None
-        point = operating_point(vehicle, speed)
         radius = vehicle.geometry.wheel_radius
-        return cls(SteeringGeometry.of(vehicle), vehicle.drive, vehicle.steering, radius, point)
+        return cls(SteeringGeometry.of(vehicle), motors_of(vehicle, speed), vehicle.steering, radius)
 
     @property
     def speed_ratio(self) -> float:
         """wd over the yaw rate of the track: lambda/r0 [-]; half of Eq. (1) is lambda V rho/r0."""
         return self.geometry.half_tape_distance / self.radius
-
-    @property
-    def steering_voltage_max(self) -> float:
-        """(1 - x) VaMax [V]: what traction leaves for |u| of Eqs (22) and (23)."""
-        return (1.0 - self.drive.traction_share) * self.drive.armature_voltage_max
 
     @property
     def moment_max(self) -> float:
@@ -254,15 +246,16 @@ def command_steering(d: Diagram, plant: Plant, w: Wheelset, moment: str, timing:
     d.probe(f"{w.name}.steering_moment_command", "N m", sent)
 
 
-def command_motors(d: Diagram, plant: Plant, w: Wheelset, voltage: str, timing: Timing) -> None:
-    """VaL = x VaMax + u and VaR = x VaMax - u, Eqs (22) and (23), with |u| at most (1 - x) VaMax."""
-    limit = plant.steering_voltage_max
-    limited = d.saturation(f"{w.name}.u.limited", voltage, -limit, limit)
+def command_motors(d: Diagram, plant: Plant, w: Wheelset, u: str, timing: Timing) -> None:
+    """Left mean + u and right mean - u, Eqs (22) and (23) for voltages, with |u| within what traction leaves."""
+    motors = plant.motors
+    limited = d.saturation(f"{w.name}.u.limited", u, -motors.steering_max, motors.steering_max)
     sent = d.delay(f"{w.name}.u.sent", limited, timing.computation_samples)
     for side, sign in (("left", 1.0), ("right", -1.0)):
-        total = d.sum(f"{w.name}.Va.{side}", {sent: sign}, bias=plant.point.armature_voltage)
-        d.command(f"{w.name}.{side}.armature_voltage", total)
-    d.probe(f"{w.name}.steering_voltage", "V", sent)
+        total = d.sum(f"{w.name}.{motors.input}.{side}", {sent: sign}, bias=motors.mean)
+        d.command(f"{w.name}.{side}.{motors.input}", total)
+    name, unit = motors.probe
+    d.probe(f"{w.name}.{name}", unit, sent)
 
 
 def check_positive(owner: object, names: Sequence[str]) -> None:

@@ -47,8 +47,8 @@ class IRWLike:
         (position along a known track).
     frequency: crossover fI of the steering loop [Hz]; with a conicity half as large again the gain margin is still 2.
     integral_time: Ti of the steering loop [s], ten times the loop's own time so that it costs little phase.
-    current_frequency: crossover of the differential current loop [Hz]: above all motion of the wheelset, below what a
-        delay of two samples bears.
+    current_frequency: crossover of the differential current loop of DC motors [Hz]: above all motion of the wheelset,
+        below what a delay of two samples bears.
     yaw_frequency: low-pass of the wheelset's yaw rate [Hz]. Above it lambda psi'/r0 stays in the speed difference, as
         it does with a database, and damps the yaw of the wheelset on its primary springs near 6 Hz.
     gyro_frequency: low-pass of the bogie's yaw rate [Hz] that the radial part of the feedforward is made of; low, so
@@ -111,19 +111,10 @@ class IRWLike:
         return 2.0 * math.pi * self.frequency * stiffness / speed**2
 
     def _torque_loop(self, d: Diagram, plant: Plant, w: Wheelset) -> None:
-        """u = K(s) (0 - (IaL - IaR)/2): equal armature currents are equal torques; K cancels the armature's pole."""
-        left, right = (d.measure(f"{w.name}.{side}.armature_current") for side in ("left", "right"))
-        now = d.sum(f"{w.name}.Id.now", {left: -0.5, right: 0.5})
-        error = d.delay(f"{w.name}.Id.error", now, self.timing.sensor_samples)
-        crossover = 2.0 * math.pi * self.current_frequency
-        voltage = d.pi(
-            f"{w.name}.u",
-            error,
-            proportional=crossover * plant.drive.armature_inductance,
-            integral=crossover * plant.drive.armature_resistance,
-            limit=plant.steering_voltage_max,
-        )
-        command_motors(d, plant, w, voltage, self.timing)
+        """Equal torques for both wheels."""
+        samples = self.timing.sensor_samples
+        u = plant.motors.equal_torques(d, w.name, samples=samples, frequency=self.current_frequency)
+        command_motors(d, plant, w, u, self.timing)
 
     def _speed_error(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
         """lambda r/r0 - wd [rad/s], r the yaw rate of the wheelset or of the track: -V gamma y/r0^2."""

@@ -41,7 +41,7 @@ class SolidLike:
         centre the wheelset, little enough that its hunting stays damped on the soft primary suspension.
     integral_time: of the speed loop [s]. Slow, because integral coupling of two wheels acts as a spring at the hunting
         frequency; it only removes what friction and unequal radii leave.
-    lead_pole: time constant [s] that replaces the armature's La/Ra in the speed loop.
+    lead_pole: time constant [s] that replaces the armature's La/Ra in the speed loop of DC motors.
     notch_frequency, notch_depth, notch_width: of the transmission's torsion mode with the wheel held by creep [Hz].
     yaw_frequency: crossover of the yaw-moment loop [Hz], below the hunting band of 2 to 8 Hz.
     sensor_frequency: low-pass of the inertial sensors [Hz], above the body's own modes near 1 Hz.
@@ -85,7 +85,7 @@ class SolidLike:
         """
         plant = Plant.of(vehicle, speed)
         d = Diagram(sample_time=self.timing.sample_time)
-        proportional = scheduled(d, "speed_loop.gain", lambda v: self._voltage_gain(plant, v))
+        proportional = scheduled(d, "speed_loop.gain", lambda v: plant.motors.of_torque(self._damping(plant, v)))
         integral = d.sum("speed_loop.integral_gain", {proportional: 1.0 / self.integral_time})
         sense_inertia(d, plant, self.timing, frequency=self.sensor_frequency)
         for wheelset in WHEELSETS:
@@ -93,29 +93,26 @@ class SolidLike:
             self._yaw_moment_loop(d, plant, wheelset, track)
         return d.spec()
 
-    def _voltage_gain(self, plant: Plant, speed: float) -> float:
-        """Volts per rad/s that make the wanted damping torque through KT/(N Ra)."""
+    def _damping(self, plant: Plant, speed: float) -> float:
+        """Of the coupling between the wheels [N m s/rad]."""
         coupling = self.coupling * min(1.0, self.coupling_speed / speed)
-        damping = coupling * self.contact.longitudinal_creep * plant.radius**2 / speed
-        return damping * plant.drive.gear_ratio * plant.drive.armature_resistance / plant.point.torque_constant
+        return coupling * self.contact.longitudinal_creep * plant.radius**2 / speed
 
     def _speed_loop(
         self, d: Diagram, plant: Plant, w: Wheelset, track: Track, proportional: str, integral: str
     ) -> None:
-        """u = K(s) (lambda V rho/r0 - wd), with the back-EMF of the commanded difference added."""
+        """u = K(s) (lambda V rho/r0 - wd), with the back-EMF of the commanded difference added where there is one."""
         ts = self.timing.sample_time
         rho = database_curvature(d, f"{w.name}.rho.here", track, d.measure(f"{w.name}.s"))
         turn = d.product(f"{w.name}.turn", rho, d.measure(SPEED))
         error = d.sum(f"{w.name}.wd.error", {turn: plant.speed_ratio, speed_difference(d, w, self.timing): -1.0})
-        armature = plant.drive.armature_inductance / plant.drive.armature_resistance
-        shape = [
-            lead(armature, self.lead_pole, sample_time=ts),
-            notch(self.notch_frequency, depth=self.notch_depth, width=self.notch_width, sample_time=ts),
-        ]
+        shape = [notch(self.notch_frequency, depth=self.notch_depth, width=self.notch_width, sample_time=ts)]
+        if plant.motors.lag > 0.0:
+            shape.insert(0, lead(plant.motors.lag, self.lead_pole, sample_time=ts))
         shaped = d.filter(f"{w.name}.wd.shaped", error, shape)
-        limit = plant.steering_voltage_max
+        limit = plant.motors.steering_max
         feedback = d.pi(f"{w.name}.u.feedback", shaped, proportional=proportional, integral=integral, limit=limit)
-        back_emf = plant.point.torque_constant / plant.drive.gear_ratio * plant.speed_ratio
+        back_emf = plant.motors.per_speed * plant.speed_ratio
         command_motors(d, plant, w, d.sum(f"{w.name}.u", {feedback: 1.0, turn: back_emf}), self.timing)
 
     def _yaw_moment_loop(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:

@@ -1,6 +1,7 @@
 """Traction drives: running resistance, operating point of the motors, transfer functions of Eqs (12) to (29).
 Equation numbers are those of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 207-217."""
 
+from klingel.drives.demand import Demand, torque_demand
 from klingel.drives.formulas import (
     DavisCoefficients,
     Resistance,
@@ -10,19 +11,26 @@ from klingel.drives.formulas import (
     sncf_general,
     strahl,
 )
+from klingel.drives.induction import InductionPoint, induction_point, induction_torque_max
 from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
 from klingel.drives.operating import OperatingPoint, operating_point, operating_table
 from klingel.drives.resistance import running_resistance
-from klingel.drives.transfer import DriveTransfer, WheelPair
+from klingel.drives.transfer import DriveTransfer, Rational, TwoInputs, WheelPair
 
 __all__ = [
     "DavisCoefficients",
+    "Demand",
     "DriveTransfer",
+    "InductionPoint",
     "OperatingPoint",
+    "Rational",
     "Resistance",
+    "TwoInputs",
     "WheelPair",
     "curve_resistance",
     "field_current",
+    "induction_point",
+    "induction_torque_max",
     "operating_point",
     "operating_table",
     "polynomial",
@@ -31,6 +39,7 @@ __all__ = [
     "sncf_general",
     "strahl",
     "torque_constant",
+    "torque_demand",
     "wheel_torque",
     "wheel_torque_max",
 ]

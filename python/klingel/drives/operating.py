@@ -7,14 +7,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from klingel.drives.demand import torque_demand
+from klingel.drives.formulas import Resistance
 from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
-from klingel.drives.resistance import running_resistance
 from klingel.errors import InputError
 
 if TYPE_CHECKING:
     from klingel.vehicle import Drive, Vehicle
-
-WHEELS = 8
 
 
 @dataclass(frozen=True)
@@ -38,31 +37,24 @@ class OperatingPoint:
     wheel_torque_max: float
 
 
-def operating_point(vehicle: Vehicle, speed: float) -> OperatingPoint:
-    """Steady running of a driven vehicle at `speed` [m/s], each wheel taking an eighth of the running resistance.
+def operating_point(vehicle: Vehicle, speed: float, *, resistance: Resistance | None = None) -> OperatingPoint:
+    """Steady running of a vehicle with DC motors at `speed` [m/s], each wheel taking an eighth of the resistance.
 
+    resistance: of the vehicle [N] over its speed [m/s]; None for the formula of the vehicle's file.
     The friction CM wM of the rotor is added to the torque asked of Eq. (5), so that the wheel really gets its torque.
     Below the base speed Eq. (5) would ask for more field than the motor has.
-    Errors: InputError for a vehicle without drives, a torque out of reach, a field current above the rated one.
+    Errors: InputError for a vehicle without DC motors, a torque out of reach, a field current above the rated one.
 
     >>> from klingel import library
     >>> point = operating_point(library.vehicle("mechatronic_irw"), 176 / 3.6)
     >>> round(point.wheel_torque), round(point.field_current_normalised, 2)
     (177, 0.61)
     """
-    drive = vehicle.drive
-    if drive is None:
-        raise InputError.single("drive", None, "is missing", remedy=f"{vehicle.name} is hauled; take a driven vehicle")
-    if not speed >= 0.0:
-        raise InputError.single("speed", speed, "must not be negative [m/s]", remedy="give the running speed")
+    drive = vehicle.dc_drive
+    demand = torque_demand(vehicle, drive, speed, resistance)
     if speed == 0.0:
         return _at_rest(drive)
-    radius = vehicle.geometry.wheel_radius
-    resistance = running_resistance(vehicle)(speed) / WHEELS
-    torque = resistance * radius
-    motor_speed = speed / radius / drive.gear_ratio
-    air_gap = torque + drive.rotor_damping * motor_speed / drive.gear_ratio
-    current = field_current(drive, air_gap, motor_speed)
+    current = field_current(drive, demand.air_gap, demand.motor_speed)
     if current > drive.field_current_rated:
         raise InputError.single(
             "speed",
@@ -73,15 +65,15 @@ def operating_point(vehicle: Vehicle, speed: float) -> OperatingPoint:
     kt = torque_constant(drive, current)
     return OperatingPoint(
         speed=speed,
-        resistance=resistance,
-        wheel_torque=torque,
-        motor_speed=motor_speed,
+        resistance=demand.resistance,
+        wheel_torque=demand.wheel,
+        motor_speed=demand.motor_speed,
         field_current=current,
         field_current_normalised=current / drive.field_current_rated,
-        armature_current=drive.gear_ratio * air_gap / kt,
+        armature_current=drive.gear_ratio * demand.air_gap / kt,
         torque_constant=kt,
         armature_voltage=drive.traction_share * drive.armature_voltage_max,
-        wheel_torque_max=wheel_torque_max(drive, motor_speed),
+        wheel_torque_max=wheel_torque_max(drive, demand.motor_speed),
     )
 
 
@@ -102,6 +94,8 @@ def _at_rest(drive: Drive) -> OperatingPoint:
     )
 
 
-def operating_table(vehicle: Vehicle, speeds: Iterable[float]) -> tuple[OperatingPoint, ...]:
+def operating_table(
+    vehicle: Vehicle, speeds: Iterable[float], *, resistance: Resistance | None = None
+) -> tuple[OperatingPoint, ...]:
     """`operating_point` at each of `speeds` [m/s]: the rows of Table 1."""
-    return tuple(operating_point(vehicle, speed) for speed in speeds)
+    return tuple(operating_point(vehicle, speed, resistance=resistance) for speed in speeds)

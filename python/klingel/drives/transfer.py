@@ -1,8 +1,10 @@
 """Transfer functions of the differential drive of a wheel pair, Eqs (12) to (29), for one motor speed.
-Polynomials are written out, so that nothing cancels numerically; `K(s)` is always a controller, `C(s)` Eq. (17)."""
+Polynomials are written out, so that nothing cancels numerically; `K(s)` is always a controller, `C(s)` Eq. (17).
+Signals have the paper's names; u, Td, wd and Id are half differences of the pair, left minus right."""
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -19,10 +21,12 @@ S = Polynomial([0.0, 1.0])
 
 @dataclass(frozen=True)
 class Rational:
-    """A transfer function as two polynomials in s, lowest power first."""
+    """A transfer function as two polynomials in s, lowest power first, from `input` to `output`."""
 
     numerator: Polynomial
     denominator: Polynomial
+    input: str = "u"
+    output: str = "y"
 
     def __call__(self, s: complex) -> complex:
         """The value at a complex frequency s [1/s]."""
@@ -42,10 +46,10 @@ class Rational:
         return self.numerator.coef[::-1], self.denominator.coef[::-1]
 
     def to_control(self) -> Any:
-        """The same as a `control.TransferFunction`."""
+        """The same as a `control.TransferFunction` with its input and output named."""
         import control
 
-        return control.TransferFunction(*self.coefficients())
+        return control.TransferFunction(*self.coefficients(), inputs=[self.input], outputs=[self.output])
 
 
 @dataclass(frozen=True)
@@ -65,7 +69,28 @@ class WheelPair:
     def Gw(self) -> Rational:
         """wd/Td = 1/(Iwy s + f11 r0^2/V), Eq. (26): a torque forward turns the wheel forward, so plus."""
         creep = self.longitudinal_creep * self.radius**2 / self.speed
-        return Rational(Polynomial([1.0]), self.wheel_inertia * S + creep)
+        return Rational(Polynomial([1.0]), self.wheel_inertia * S + creep, "Td", "wd")
+
+
+@dataclass(frozen=True)
+class TwoInputs:
+    """Td of a wheel pair from what is commanded and from wd: the two terms of Eqs (24), (25) and (28)."""
+
+    command: Rational
+    speed: Rational
+
+    def to_control(self) -> Any:
+        """The same as a `control.TransferFunction` with both inputs and the output named."""
+        import control
+
+        parts = (self.command, self.speed)
+        numerators, denominators = zip(*(part.coefficients() for part in parts), strict=True)
+        names = [part.input for part in parts]
+        return control.TransferFunction([list(numerators)], [list(denominators)], inputs=names, outputs=["Td"])
+
+
+def _of_speed(transfer: Rational) -> Rational:
+    return dataclasses.replace(transfer, input="wd", output="Td")
 
 
 @dataclass(frozen=True)
@@ -77,6 +102,8 @@ class DriveTransfer:
     >>> transfer = DriveTransfer.of(vehicle.drive, field_current=6.05)
     >>> round(transfer.Gu(0j).real, 1)   # KT/(N Ra) with the wheel held: N m/V
     56.2
+    >>> transfer.open_loop().to_control().input_labels
+    ['u', 'wd']
     """
 
     armature_resistance: float
@@ -131,27 +158,44 @@ class DriveTransfer:
     @property
     def Gu(self) -> Rational:
         """TOUT/Va = A B/(C + B), Eq. (13)."""
-        return Rational(self.A.numerator * self.B.numerator, self._common)
+        return Rational(self.A.numerator * self.B.numerator, self._common, "Va", "TOUT")
 
     @property
     def Gv(self) -> Rational:
         """TOUT/wOUT = - C B/(C + B), Eq. (14): a wheel that runs ahead is held back, so minus."""
-        return Rational(-self.C.numerator * self.B.numerator, self._common)
+        return Rational(-self.C.numerator * self.B.numerator, self._common, "wOUT", "TOUT")
 
     def torque_plant(self, pair: WheelPair) -> Rational:
         """Td/u = Gu/(1 - Gv Gw), Eq. (27): the design plant of the torque loop."""
-        return Rational(self.Gu.numerator * pair.Gw.denominator, self._closed(pair))
+        return Rational(self.Gu.numerator * pair.Gw.denominator, self._closed(pair), "u", "Td")
 
     def current_plant(self, pair: WheelPair) -> Rational:
         """Half difference of the armature currents over u, from Eqs (2), (10) and (27): plant of a current loop."""
         rotor = self.rotor_inertia * S + self.rotor_damping
         torque = self.torque_plant(pair)
         numerator = rotor * torque.denominator + self.gear_ratio * self.torque_constant * torque.numerator
-        return Rational(numerator, (rotor * self._armature + self.torque_constant**2) * torque.denominator)
+        return Rational(numerator, (rotor * self._armature + self.torque_constant**2) * torque.denominator, "u", "Id")
 
     def speed_plant(self, pair: WheelPair) -> Rational:
         """wd/u = Gu Gw/(1 - Gv Gw), Eq. (29): the design plant of the speed loop."""
-        return Rational(self.Gu.numerator, self._closed(pair))
+        return Rational(self.Gu.numerator, self._closed(pair), "u", "wd")
+
+    def open_loop(self) -> TwoInputs:
+        """Td = Gu u + Gv wd, Eq. (24)."""
+        return TwoInputs(dataclasses.replace(self.Gu, input="u", output="Td"), _of_speed(self.Gv))
+
+    def torque_loop(self, controller: Rational) -> TwoInputs:
+        """Td = [Gu K/(1 + Gu K)] Td_command + [Gv/(1 + Gu K)] wd, Eq. (25), with the torque controller K(s)."""
+        closed = self._common * controller.denominator + self.Gu.numerator * controller.numerator
+        command = Rational(self.Gu.numerator * controller.numerator, closed, "Td_command", "Td")
+        return TwoInputs(command, _of_speed(Rational(self.Gv.numerator * controller.denominator, closed)))
+
+    def speed_loop(self, controller: Rational) -> TwoInputs:
+        """Td = Gu K wd_command + (Gv - Gu K) wd, Eq. (28), with the speed controller K(s)."""
+        gain = self.Gu.numerator * controller.numerator
+        both = self._common * controller.denominator
+        coupling = self.Gv.numerator * controller.denominator - gain
+        return TwoInputs(Rational(gain, both, "wd_command", "Td"), _of_speed(Rational(coupling, both)))
 
     def _closed(self, pair: WheelPair) -> Polynomial:
         return self._common * pair.Gw.denominator - self.Gv.numerator

@@ -8,7 +8,8 @@ import tomllib
 from importlib import resources
 
 from klingel.errors import InputError, nearest
-from klingel.vehicle import Vehicle
+from klingel.records import validated
+from klingel.vehicle import InductionDrive, Vehicle
 
 
 def names() -> list[str]:
@@ -30,6 +31,29 @@ def vehicle(name: str) -> Vehicle:
     if name not in names():
         raise InputError.single("vehicle", name, "is not in the library", remedy=nearest(name, names()))
     return Vehicle.from_tables(tomllib.loads(text(name)), file=f"{name}.toml")
+
+
+def drives() -> list[str]:
+    """Names of the library's drives, sorted; that of a vehicle's file is in the vehicle.
+
+    >>> drives()
+    ['induction_160kw']
+    """
+    files = (resources.files(__name__) / "drives").iterdir()
+    return sorted(f.name.removesuffix(".toml") for f in files if f.name.endswith(".toml"))
+
+
+def drive(name: str) -> InductionDrive:
+    """The library's drive of that name, for `Vehicle.replace`; errors: InputError with the nearest known name.
+
+    >>> drive("induction_160kw").pole_pairs
+    2.0
+    """
+    if name not in drives():
+        raise InputError.single("drive", name, "is not in the library", remedy=nearest(name, drives()))
+    file = resources.files(__name__) / "drives" / f"{name}.toml"
+    tables = tomllib.loads(file.read_text(encoding="utf-8"))
+    return validated(InductionDrive, tables["drive"] | {"sources": tables["sources"]}, file=f"{name}.toml")
 
 
 def text(name: str) -> str:

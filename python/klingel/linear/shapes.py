@@ -57,6 +57,14 @@ class Spring:
         return float(0.25 * np.real(np.conj(q) @ self.stiffness @ q))
 
 
+ALL_DRIVES = (
+    *("armature_current", "field_current"),
+    *("current_d", "current_q", "rotor_flux_d", "rotor_flux_q", "flux_model", "integral_d", "integral_q"),
+    *("motor_speed", "shaft_twist"),
+)
+"""States of a drive, as far as its kind has them."""
+
+
 class Structure:
     """A spec on the states of its linear model.
 
@@ -94,6 +102,12 @@ class Structure:
         }
 
     @cached_property
+    def drives(self) -> tuple[Spec, ...]:
+        """Name, body and transmission of every drive, whatever its motor."""
+        dc, induction = (self.spec.get(kind, ()) for kind in ("drives", "induction_drives"))
+        return (*dc, *({"name": d["name"], "body": d["body"]} | d["transmission"] for d in induction))
+
+    @cached_property
     def groups(self) -> Mapping[str, NDArray[np.intp]]:
         """Kinds of states to places: `bodies`, `rotors`, `dampers`, `actuators`, `drives`, `hold`, `controller`."""
         known: dict[str, list[int]] = {
@@ -107,8 +121,9 @@ class Structure:
             ],
             "drives": [
                 self.places[f"{d['name']}.{part}"]
-                for d in self.spec.get("drives", ())
-                for part in ("armature_current", "motor_speed", "shaft_twist")
+                for d in self.drives
+                for part in ALL_DRIVES
+                if f"{d['name']}.{part}" in self.places
             ],
             "hold": [self.places["hold.integral"]] if "hold.integral" in self.places else [],
         }
@@ -122,7 +137,7 @@ class Structure:
         for name, (place, inertia) in self.rotors.items():
             energies[name] = 0.25 * inertia * abs(shape[place]) ** 2
         of = {body.name: body for body in self.bodies}
-        for d in self.spec.get("drives", ()):
+        for d in self.drives:
             # the motor's speed is that relative to its stator on the body, which turns forward at -wy
             speed = d["gear_sense"] * shape[self.places[f"{d['name']}.motor_speed"]]
             speed -= _taken(shape, of[d["body"]].rates)[4]
@@ -143,10 +158,7 @@ class Structure:
             Spring(name, (self.places[state],), np.array([[stiffness]]))
             for name, state, stiffness in (
                 *((m["name"], f"{m['name']}.force", 1.0 / m["stiffness"]) for m in self.spec.get("maxwells", ())),
-                *(
-                    (f"{d['name']}.shaft", f"{d['name']}.shaft_twist", d["transmission_stiffness"])
-                    for d in self.spec.get("drives", ())
-                ),
+                *((f"{d['name']}.shaft", f"{d['name']}.shaft_twist", d["transmission_stiffness"]) for d in self.drives),
             )
         ]
         return (*self._bushings, *self._stops, *inner, *self._contacts)

@@ -44,9 +44,8 @@ def targets(summary: Summary, vehicle: Vehicle) -> list[Target]:
     Returns:
         The targets; one whose runs are missing is `not run`, as is one about every curve with fewer than three.
     """
-    assert vehicle.drive is not None
     assert vehicle.steering is not None
-    drive = vehicle.drive
+    drive = vehicle.dc_drive
     voltage = (1.0 - drive.traction_share) * drive.armature_voltage_max
     current = 2.0 * drive.armature_current_rated
     worst = {

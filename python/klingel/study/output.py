@@ -127,9 +127,8 @@ def write_report(
 ) -> None:
     """`report.html`, one page with everything in it."""
     vehicle = library.vehicle("mechatronic_irw")
-    assert vehicle.drive is not None
     assert vehicle.running_resistance is not None
-    drive, resistance = vehicle.drive, vehicle.running_resistance
+    drive, resistance = vehicle.dc_drive, vehicle.running_resistance
     page = StudyPage(
         summary=summary,
         variants=variants,

@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 from klingel.errors import InputError
 from klingel.records import Parameter, Record, parameters, read_toml, validated
 from klingel.vehicle.bodies import AxleBridge, Geometry, RigidBody, SolidWheelset, WheelProfile
-from klingel.vehicle.drive import Drive, SteeringActuator
+from klingel.vehicle.drive import AnyDrive, Drive, InductionDrive, SteeringActuator, Transmission
 from klingel.vehicle.resistance import RunningResistance
 from klingel.vehicle.suspension import (
     AntiRollBar,
@@ -53,7 +53,7 @@ class Vehicle(Record):
     traction_rod: TractionRod
     yaw_damper: YawDamper | None = None
     torque_link: TorqueLink | None = None
-    drive: Drive | None = None
+    drive: AnyDrive | None = None
     steering: SteeringActuator | None = None
     running_resistance: RunningResistance | None = None
 
@@ -66,6 +66,32 @@ class Vehicle(Record):
     def from_tables(cls, tables: dict[str, Any], *, file: str | None = None) -> Self:
         """The vehicle of the tables of a file; errors as for `read`."""
         return validated(cls, tables, file=file)
+
+    def replace(self, **changes: Any) -> Self:
+        """The same vehicle with other tables, such as `drive=library.drive("induction_160kw")`; errors: InputError.
+
+        >>> from klingel import library
+        >>> vehicle = library.vehicle("mechatronic_irw")
+        >>> vehicle.replace(drive=library.drive("induction_160kw")).drive.kind
+        'induction'
+        """
+        return validated(type(self), {name: getattr(self, name) for name in type(self).model_fields} | changes)
+
+    @property
+    def dc_drive(self) -> Drive:
+        """The drive of a vehicle with DC motors; errors: InputError for one without drives or with other motors."""
+        if not isinstance(self.drive, Drive):
+            remedy = "take a vehicle with DC motors" if self.drive else f"{self.name} is hauled; take a driven vehicle"
+            raise InputError.single("drive", getattr(self.drive, "kind", None), "is no DC drive", remedy=remedy)
+        return self.drive
+
+    @property
+    def induction_drive(self) -> InductionDrive:
+        """The drive of a vehicle with induction motors; errors: InputError for one without drives or with others."""
+        if not isinstance(self.drive, InductionDrive):
+            remedy = 'replace its drive with library.drive("induction_160kw")'
+            raise InputError.single("drive", getattr(self.drive, "kind", None), "is no induction drive", remedy=remedy)
+        return self.drive
 
     @property
     def independent_wheels(self) -> bool:
@@ -107,7 +133,8 @@ class Vehicle(Record):
             raise _inconsistent("axle_bridge needs a torque_link that holds its pitch", "add the table [torque_link]")
         if self.drive is not None and self.running_resistance is None:
             raise _inconsistent("drive needs a running_resistance", "add the table [running_resistance]")
-        unknown = sorted({s for p in self.parameters() for s in p.source} - set(self.sources))
+        listed = {*self.sources, *(self.drive.sources if self.drive else ())}
+        unknown = sorted({s for p in self.parameters() for s in p.source} - listed)
         if unknown:
             raise _inconsistent(f"source {unknown[0]!r} is not listed", "add it to [sources]")
         return self
@@ -119,9 +146,11 @@ def _inconsistent(message: str, remedy: str) -> PydanticCustomError:
 
 __all__ = [
     "AntiRollBar",
+    "AnyDrive",
     "AxleBridge",
     "Drive",
     "Geometry",
+    "InductionDrive",
     "LateralStop",
     "Primary",
     "RigidBody",
@@ -131,6 +160,7 @@ __all__ = [
     "SteeringActuator",
     "TorqueLink",
     "TractionRod",
+    "Transmission",
     "Vehicle",
     "WheelProfile",
     "YawDamper",

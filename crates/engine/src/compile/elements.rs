@@ -1,11 +1,11 @@
-//! Force elements and drives of a spec as the laws of `klingel_physics`, their states in order.
+//! Force elements of a spec as the laws of `klingel_physics`, their states in order.
 //! Every number is checked here; a message names the element.
 
 use super::{Compiler, positive, value};
 use crate::error::EngineError;
-use crate::model::{ActuatorIn, Drive, Hold, MaxwellIn, StopIn};
+use crate::model::{ActuatorIn, Hold, MaxwellIn, StopIn};
 use crate::spec::DragSpec;
-use klingel_physics::drives::{self, Actuator, RunningResistance};
+use klingel_physics::drives::{Actuator, RunningResistance};
 use klingel_physics::elements::{BlowOff, Bushing, Maxwell, Stop};
 
 impl Compiler<'_> {
@@ -81,42 +81,6 @@ impl Compiler<'_> {
             actuators.push(ActuatorIn { name: a.name.clone(), joint, law, state, input: inputs.len() - 1 });
         }
         Ok(actuators)
-    }
-
-    pub(super) fn drives(&mut self) -> Result<Vec<Drive>, EngineError> {
-        let mut drives = Vec::new();
-        for (input, d) in self.spec.drives.iter().enumerate() {
-            let body = self.body(&d.name, &d.body)?;
-            let rotor = self.rotor(&d.name, body, &d.rotor)?;
-            if !self.bodies[body].pitches {
-                return Err(value(&d.name, &d.body, "a drive needs a body that pitches, to take its reaction"));
-            }
-            let law = drives::Drive {
-                armature_resistance: positive(&d.name, "armature_resistance", d.armature_resistance)?,
-                armature_inductance: positive(&d.name, "armature_inductance", d.armature_inductance)?,
-                emf_constant: positive(&d.name, "emf_constant", d.emf_constant)?,
-                field_current: positive(&d.name, "field_current", d.field_current)?,
-                gear_ratio: positive(&d.name, "gear_ratio", d.gear_ratio)?,
-                rotor_inertia: positive(&d.name, "rotor_inertia", d.rotor_inertia)?,
-                rotor_damping: d.rotor_damping,
-                transmission_stiffness: positive(&d.name, "transmission_stiffness", d.transmission_stiffness)?,
-                transmission_damping: d.transmission_damping,
-            };
-            let state = self.states.add(format!("{}.armature_current", d.name), "A", 0.0);
-            self.states.add(format!("{}.motor_speed", d.name), "rad/s", 0.0);
-            self.states.add(format!("{}.shaft_twist", d.name), "rad", 0.0);
-            drives.push(Drive {
-                name: d.name.clone(),
-                body,
-                rotor,
-                law,
-                gear_sense: d.gear_sense.signum(),
-                voltage_max: positive(&d.name, "armature_voltage_max", d.armature_voltage_max)?,
-                state,
-                input,
-            });
-        }
-        Ok(drives)
     }
 
     pub(super) fn drag(&self) -> Result<Option<(usize, RunningResistance)>, EngineError> {

@@ -2,15 +2,17 @@
 //! Order of the states: bodies, rotors, dampers' forces, actuators, drives, speed hold, stick of the wheels.
 
 mod elements;
+mod motors;
 mod wheels;
 
 use crate::error::EngineError;
 use crate::inputs::Places;
-use crate::model::{Body, Course, Joint, Model, Rotor};
+use crate::model::{Body, Course, Drive, Joint, Model, Rotor};
 use crate::spec::{BodySpec, JointSpec, RunSpec, SegmentSpec, Spec, TrackSpec, UniformSpec};
 use klingel_physics::contact::Material;
 use klingel_physics::track::{Adhesion, Alignment, Segment, UniformTrack};
 
+use motors::motor_inputs;
 pub use wheels::{named_profile, pair_geometry, prepare};
 
 /// Speed v0 that keeps creepages finite at standstill \[m/s\].
@@ -26,21 +28,30 @@ pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
 
     let mut states = States::default();
     let bodies = spec.bodies.iter().map(|b| body(b, &mut states)).collect::<Result<Vec<_>, _>>()?;
-    let mut c = Compiler { spec, bodies, rotors: Vec::new(), joints: Vec::new(), joint_specs: Vec::new(), states };
+    let mut c = Compiler {
+        spec,
+        bodies,
+        rotors: Vec::new(),
+        joints: Vec::new(),
+        joint_specs: Vec::new(),
+        drives: Vec::new(),
+        states,
+    };
     c.rotors()?;
     let bushings = c.bushings()?;
     let maxwells = c.maxwells()?;
     let stops = c.stops()?;
-    let mut inputs: Vec<f64> = spec.drives.iter().map(|d| d.armature_voltage).collect();
+    let mut inputs = motor_inputs(spec);
     let actuators = c.actuators(&mut inputs)?;
-    let drives = c.drives()?;
+    let dc_motors = c.dc_motors()?;
+    let induction_motors = c.induction_motors()?;
     let drag = c.drag()?;
     let hold = c.hold()?;
     let adhesion = spec.adhesion.as_ref().map(|a| Adhesion::new(&a.s, &a.left, &a.right)).transpose()?;
     let material = Material::STEEL;
     let wheels = c.wheels(&material)?;
     let (creep, falling_friction) = wheels::creep_law(&spec.creep, &material)?;
-    let Compiler { bodies, rotors, joints, states, .. } = c;
+    let Compiler { bodies, rotors, joints, drives, states, .. } = c;
     let places = Places::new(inputs.len(), wheels.len(), hold.is_some());
     inputs.resize(places.count, 0.0);
     if hold.is_some() {
@@ -63,6 +74,8 @@ pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
         actuators,
         wheels,
         drives,
+        dc_motors,
+        induction_motors,
         drag,
         hold,
         adhesion,
@@ -137,6 +150,13 @@ fn check_run(spec: &Spec, track: &Course) -> Result<(), EngineError> {
     {
         return Err(value("control.sample_time", control.sample_time, "make it a multiple of the step"));
     }
+    let bent = match track {
+        Course::Laid(_) => spec.track.segments.iter().any(|s| s.curvature != [0.0; 2] || s.cant != [0.0; 2]),
+        Course::Uniform(track) => track.curvature != 0.0 || track.cant != 0.0,
+    };
+    if let Some(b) = spec.bodies.iter().find(|b| bent && !b.guided.is_empty()) {
+        return Err(value(format!("{}.guided", b.name), b.guided.join(", "), "guide bodies on straight level track"));
+    }
     let Course::Laid(track) = track else { return Ok(()) };
     let front = spec.bodies.iter().map(|b| b.position[0]).fold(f64::MIN, f64::max);
     let rear = spec.bodies.iter().map(|b| b.position[0]).fold(f64::MAX, f64::min);
@@ -185,8 +205,20 @@ fn body(b: &BodySpec, states: &mut States) -> Result<Body, EngineError> {
         inertia: b.inertia,
         position: b.position,
         pitches: b.pitches,
+        guided: guided(b)?,
         state: first,
     })
+}
+
+/// The coordinates that a guide keeps.
+fn guided(b: &BodySpec) -> Result<[bool; 6], EngineError> {
+    let mut kept = [false; 6];
+    for word in &b.guided {
+        let at = ["x", "y", "z", "roll", "pitch", "yaw"].iter().position(|known| known == word);
+        let at = at.filter(|&c| c != 4 || b.pitches);
+        kept[at.ok_or_else(|| value(format!("{}.guided", b.name), word, "name motions that the body has"))?] = true;
+    }
+    Ok(kept)
 }
 
 struct Compiler<'a> {
@@ -195,6 +227,7 @@ struct Compiler<'a> {
     rotors: Vec<Rotor>,
     joints: Vec<Joint>,
     joint_specs: Vec<&'a JointSpec>,
+    drives: Vec<Drive>,
     states: States,
 }
 

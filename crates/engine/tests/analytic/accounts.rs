@@ -59,9 +59,7 @@ fn rails_that_move_give_their_work() {
         .map(|k| 2.0 * std::f64::consts::PI * 4.0 * f64::from(k) * 1e-3)
         .map(|turn| (1e-3 * (1.0 - turn.cos()), 1e-3 * 8.0 * std::f64::consts::PI * turn.sin()))
         .unzip();
-    let rail = |(side, part, values): (&str, &str, &Vec<f64>)| {
-        json!({ "input": format!("wheelset.{side}.{part}"), "interval": 1e-3, "values": values, "joined": true })
-    };
+    let rail = |(side, part, values): (&str, &str, &Vec<f64>)| json!({ "input": format!("wheelset.{side}.{part}"), "interval": 1e-3, "values": values, "joined": true });
     case["run"]["excitations"] = [("left", "rail_z", &wave), ("left", "rail_z_rate", &rate)].map(rail).to_vec().into();
     let [residual, rails, suspension] = booked(&case, &["residual", "rails", "suspension"])[..] else { unreachable!() };
     assert!(rails > 5.0 && suspension > 5.0, "{rails} {suspension}");

@@ -114,7 +114,7 @@ fn a_drive_keeps_the_momentum_about_its_axle() {
         let mut plant = Plant::new(&case);
         let mut x = plant.design_state();
         let (wy, spin) = (plant.state("top.wy"), plant.state("top.spin.spin_speed"));
-        let motor = plant.model.drives[0].state + 1;
+        let motor = plant.model.drives[0].state;
         // at rest: the wheel and the motor wind up from nothing
         (x[spin], x[motor]) = (0.0, 0.0);
         let momentum = |x: &[f64]| 300.0 * x[wy] - ROTOR * x[spin] - 1.5 * (sense * x[motor] - x[wy]);
@@ -138,10 +138,10 @@ fn the_first_instant_of_a_drive_is_right() {
             "transmission_stiffness": 2e5, "transmission_damping": 0.0 }]);
         let mut plant = Plant::new(&case);
         let mut x = plant.design_state();
-        let drive = plant.model.drives[0].state;
+        let (motor, armature) = (plant.model.drives[0].state, plant.model.dc_motors[0].state);
         let spin = plant.state("top.spin.spin_speed");
         let (current, twist) = (50.0, 1e-3);
-        (x[drive], x[drive + 1], x[drive + 2], x[spin]) = (current, 4.0 * SPIN, twist, SPIN);
+        (x[armature], x[motor], x[motor + 1], x[spin]) = (current, 4.0 * SPIN, twist, SPIN);
         let dx = plant.rates(&x);
         let (shaft, air_gap) = (2e5 * twist, 0.4646 * 6.0 * current);
         let net = air_gap - 0.25 * shaft;
@@ -149,7 +149,7 @@ fn the_first_instant_of_a_drive_is_right() {
         let pitching = (shaft + sense * net) / 300.0;
         assert!((dx[plant.state("top.wy")] - pitching).abs() < 1e-12);
         assert!((dx[spin] - shaft / ROTOR).abs() < 1e-12);
-        assert!((dx[drive + 1] - (net / 1.5 + sense * pitching)).abs() < 1e-11);
+        assert!((dx[motor] - (net / 1.5 + sense * pitching)).abs() < 1e-11);
     }
 }
 
@@ -165,8 +165,8 @@ fn the_armature_voltage_stays_within_its_limit() {
             "transmission_stiffness": 2e5, "transmission_damping": 0.0 }]);
         let mut plant = Plant::new(&case);
         let x = plant.design_state();
-        let drive = plant.model.drives[0].state;
-        assert_eq!(x[drive + 1], 0.0);
-        assert_eq!(plant.rates(&x)[drive], put_out / 3e-3);
+        assert_eq!(x[plant.model.drives[0].state], 0.0);
+        let armature = plant.model.dc_motors[0].state;
+        assert_eq!(plant.rates(&x)[armature], put_out / 3e-3);
     }
 }

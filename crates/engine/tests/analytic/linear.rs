@@ -2,6 +2,7 @@
 
 use crate::bogie::bogie;
 use crate::common::Plant;
+use crate::drives::induction_drive;
 use klingel_engine::pass::Pass;
 use klingel_engine::{linearise, steady};
 use serde_json::json;
@@ -15,6 +16,7 @@ fn scale(unit: &str) -> f64 {
         "N/s" => 1e5,
         "N m" => 1e3,
         "A" | "V" => 10.0,
+        "V s" => 0.1,
         "1/m" => 1e-3,
         _ => panic!("no scale for {unit}"),
     }
@@ -24,6 +26,12 @@ fn scale(unit: &str) -> f64 {
 fn slopes_are_central_differences() {
     for law in ["linear", "polach", "table"] {
         let mut case = bogie(law, 1.0);
+        if law == "polach" {
+            // a moved field on one wheel, an induction motor on the other
+            case["drives"][0]["field"] = json!({ "resistance": 20.0, "inductance": 12.0, "voltage_max": 300.0 });
+            case["drives"].as_array_mut().expect("drives").pop();
+            case["induction_drives"] = json!([induction_drive("rear", "right", 50.0)]);
+        }
         case["track"] =
             json!({ "start": 0.0, "cant_base": 1.5, "uniform": { "curvature": 1.0 / 400.0, "cant": 0.12 } });
         let plant = Plant::new(&case);

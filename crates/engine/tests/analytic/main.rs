@@ -5,6 +5,7 @@ mod accounts;
 mod along_track;
 mod bogie;
 mod common;
+mod drives;
 mod energy;
 mod flange;
 mod frames;
