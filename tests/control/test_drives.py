@@ -82,7 +82,7 @@ def test_largest_torque_of_eq_5() -> None:
         field_current(DRIVE, 1.001 * limit, POINT.motor_speed)
 
 
-@pytest.mark.parametrize(("speed", "word"), [(0.0, "must be positive"), (25.0, "above the base speed")])
+@pytest.mark.parametrize(("speed", "word"), [(-1.0, "must not be negative"), (25.0, "above the base speed")])
 def test_speeds_without_an_operating_point(speed: float, word: str) -> None:
     with pytest.raises(InputError, match=word):
         operating_point(VEHICLE, speed)

@@ -88,6 +88,35 @@ def test_it_closes_in_traction_and_braking(voltage: float, given: str) -> None:
     assert growth > 100.0 if given == "traction" else growth < -100.0
 
 
+def test_it_closes_while_a_field_moves() -> None:
+    spec = spec_of("mechatronic_irw", hold=None, duration=2.0)
+    for drive in spec["drives"]:
+        drive["field"] = {"resistance": 20.0, "inductance": 12.0, "voltage_max": 400.0}
+    spec["run"]["excitations"] = [
+        {"input": f"{drive['name']}.field_voltage", "interval": 0.5, "values": [-40.0, 40.0]}
+        for drive in spec["drives"]
+    ]
+    run = kl.simulate_spec(spec, strict=True)
+    table = energy(run)["energy_kJ"]
+    assert table["copper_field"] > 1.0
+    assert np.abs(run["energy.magnetic"]).max() > 10.0
+    assert residual(run) < CLOSED
+
+
+def test_it_closes_with_induction_motors_while_they_pull() -> None:
+    vehicle = library.vehicle("mechatronic_irw").replace(drive=library.drive("induction_160kw"))
+    spec = lower(kl.Scenario(vehicle, kl.Track.straight("300 m"), speed=30.0, duration=2.0)) | {"hold": None}
+    spec["run"]["excitations"] = [
+        {"input": f"{drive['name']}.torque_command", "interval": 1.0, "values": [600.0, -600.0]}
+        for drive in spec["induction_drives"]
+    ]
+    run = kl.simulate_spec(spec, strict=True)
+    table = energy(run)["energy_kJ"]
+    assert min(table["copper_stator"], table["copper_rotor"], table["regeneration"]) > 0.1
+    assert table["traction"] > 100.0
+    assert residual(run) < CLOSED
+
+
 def test_a_grade_and_a_headwind_are_paid_by_the_hold() -> None:
     scenario = kl.Scenario(
         library.vehicle("manchester_coach"),

@@ -98,3 +98,16 @@ fn wind_becomes_motion_and_drag_stops_it() {
     assert!(drag > 5000.0 && (kinetic + drag - wind).abs() < 1e-6, "{drag} {kinetic}");
     assert!(residual.abs() < 1e-6, "{residual}");
 }
+
+/// A rig that keeps the speed of a body gives what its drag takes.
+#[test]
+fn a_guide_gives_what_drag_takes() {
+    let mut case = wheelset(json!({ "cone": 0.025 }), 0.025, straight(60.0), 15.0, 1.0);
+    case["bodies"][0]["guided"] = json!(["x"]);
+    case["drag"] = json!({ "body": "wheelset", "coefficients": [0.0, 100.0, 0.0] });
+    let [residual, guides, drag] = booked(&case, &["residual", "guides", "running_resistance"])[..] else {
+        unreachable!()
+    };
+    assert!((drag - 100.0 * 15.0 * 15.0).abs() < 1e-6 && (guides / drag - 1.0).abs() < 1e-3, "{guides} {drag}");
+    assert!(residual.abs() < 1e-5 * drag, "{residual}");
+}
