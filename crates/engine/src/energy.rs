@@ -89,14 +89,14 @@ impl Energy {
     pub fn new(m: &Model) -> Self {
         let excited = |part: &str| m.run.excitations.iter().any(|e| e.input.contains(part));
         let graded = matches!(&m.track, Course::Laid(alignment) if alignment.climbs());
-        let guided: Vec<usize> = (0..m.bodies.len()).filter(|&i| kept(&m.bodies[i])).collect();
+        let guided: Vec<usize> =
+            (0..m.bodies.len()).filter(|&i| !m.bodies[i].pitches || m.bodies[i].guided != [false; 6]).collect();
         let damped = (0..m.bushings.len()).filter(|&i| m.bushings[i].1.damps()).collect();
-        let (driven, wheels, blown) = (!m.drives.is_empty(), !m.wheels.is_empty(), excited("wind."));
-        let moved = m.dc_motors.iter().any(|motor| matches!(motor.field, FieldIn::Moved { .. }));
+        let (wheels, blown) = (!m.wheels.is_empty(), excited("wind."));
         let has = |account: Account| match account {
-            Traction | Regeneration | MotorFriction | Transmission => driven,
+            Traction | Regeneration | MotorFriction | Transmission => !m.drives.is_empty(),
             CopperArmature => !m.dc_motors.is_empty(),
-            CopperField => moved,
+            CopperField => m.dc_motors.iter().any(|d| matches!(d.field, FieldIn::Moved { .. })),
             CopperStator | CopperRotor => !m.induction_motors.is_empty(),
             Actuators => !m.actuators.is_empty(),
             Hold => m.hold.is_some(),
@@ -186,37 +186,34 @@ impl Energy {
     }
 }
 
-/// Electrical power, copper, friction of the rotors, damping of the shafts. A held field costs nothing here.
+/// Electrical power and copper of the motors, friction of their rotors, damping of the shafts.
 fn drives(m: &Model, x: &[f64], inputs: &[f64], w: &Workspace<f64>, book: &mut impl FnMut(Account, f64)) {
+    let electrical = |watts: f64| (if watts > 0.0 { Traction } else { Regeneration }, watts.abs());
     for motor in &m.dc_motors {
         let current = x[motor.state];
-        let mut electrical = motor.armature_voltage(inputs) * current;
+        let mut taken = motor.armature_voltage(inputs) * current;
         book(CopperArmature, motor.law.dissipated(current));
         if let (FieldIn::Moved { law, state, .. }, Some(voltage)) = (&motor.field, motor.field_voltage(inputs)) {
-            electrical += voltage * x[*state];
+            taken += voltage * x[*state];
             book(CopperField, law.dissipated(x[*state]));
         }
-        book(if electrical > 0.0 { Traction } else { Regeneration }, electrical.abs());
+        let (account, watts) = electrical(taken);
+        book(account, watts);
     }
-    for (motor, put_out) in m.induction_motors.iter().zip(&w.inverters) {
+    for (motor, excited) in m.induction_motors.iter().zip(&w.inverters) {
         let (state, _) = motor.read(x);
-        let electrical = motor.law.input_power(&state, put_out.voltage);
         let [stator, rotor] = motor.law.dissipated(&state);
         book(CopperStator, stator);
         book(CopperRotor, rotor);
-        book(if electrical > 0.0 { Traction } else { Regeneration }, electrical.abs());
+        let (account, watts) = electrical(motor.law.input_power(&state, excited.voltage));
+        book(account, watts);
     }
     for drive in &m.drives {
         let wheel_speed = x[m.rotors[drive.rotor].state] + w.motions[drive.body].w_B.y();
-        let [friction, shaft] = drive.law.dissipated(x[drive.state], wheel_speed);
-        book(MotorFriction, friction);
+        let [bearings, shaft] = drive.law.dissipated(x[drive.state], wheel_speed);
+        book(MotorFriction, bearings);
         book(Transmission, shaft);
     }
-}
-
-/// Whether a guide keeps some motion of a body; the frame of a solid wheelset has no pitch of its own.
-fn kept(body: &Body) -> bool {
-    !body.pitches || body.guided.contains(&true)
 }
 
 /// What gravity on a grade does beyond the fall of the centres of mass in the level frame \[W\].
@@ -260,9 +257,8 @@ fn stored(m: &Model, x: &[f64], w: &Workspace<f64>) -> [f64; STORED.len()] {
     }
     for drive in &m.drives {
         let absolute = x[drive.state] * drive.gear_sense - w.motions[drive.body].w_B.y();
-        let [rotor, shaft] = drive.law.stored(absolute, x[drive.state + 1]);
-        kinetic += rotor;
-        elastic += shaft;
+        kinetic += 0.5 * drive.law.rotor_inertia * absolute * absolute;
+        elastic += drive.law.stored(x[drive.state + 1]);
     }
     for motor in &m.dc_motors {
         magnetic += motor.law.stored(x[motor.state]);

@@ -55,11 +55,7 @@ pub fn wheels<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>,
     let rails = inputs[m.places.rails..].chunks_exact(RAIL.len());
     for ((wheel, state), rail) in m.wheels.iter().zip(&mut w.wheels).zip(rails) {
         let motion = &w.motions[wheel.body];
-        let friction = match &m.adhesion {
-            Some(adhesion) => adhesion.at(x[m.bodies[wheel.body].state], wheel.sign),
-            None => S::constant(wheel.friction),
-        };
-        let (forces, moment) = wheel_on_rail(m, wheel, motion, x, rail, friction, dx, w.secants)?;
+        let (forces, moment) = wheel_on_rail(m, wheel, motion, x, rail, dx, w.secants)?;
         let loads = &mut w.loads[wheel.body];
         loads.force_T += forces.force_T;
         loads.moment_T += moment;
@@ -79,11 +75,14 @@ fn wheel_on_rail<S: Scalar>(
     body: &Motion<S>,
     x: &[S],
     rail: &[S],
-    standing_friction: S,
     dx: &mut [S],
     secants: bool,
 ) -> Result<(WheelState<S>, Vec3<S>), Fault> {
     let (sign, spin) = (wheel.sign, x[m.rotors[wheel.rotor].state]);
+    let standing_friction = match &m.adhesion {
+        Some(adhesion) => adhesion.at(x[m.bodies[wheel.body].state], sign),
+        None => S::constant(wheel.friction),
+    };
     // point on the axle line in the tape-circle plane: position and velocity in T
     let centre_B = Vec3::constant(wheel.centre);
     let arm_T = body.R_TB.apply(centre_B);

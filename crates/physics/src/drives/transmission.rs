@@ -67,17 +67,17 @@ impl Transmission {
         }
     }
 
-    /// Energy in the rotor at its absolute speed \[rad/s\], and in the twisted shaft \[J\].
+    /// Elastic energy of the shaft \[J\]; the rotor's kinetic energy goes with its absolute speed, which the engine knows.
     #[inline(always)]
-    pub fn stored<S: Scalar>(&self, absolute_speed: S, twist: S) -> [S; 2] {
-        [absolute_speed.square() * (0.5 * self.rotor_inertia), twist.square() * (0.5 * self.stiffness)]
+    pub fn stored<S: Scalar>(&self, twist: S) -> S {
+        twist.square() * (0.5 * self.stiffness)
     }
 
-    /// Power lost in the rotor's bearings, and in the shaft \[W\].
+    /// Power lost in the rotor's bearings and in the shaft \[W\].
     #[inline(always)]
     pub fn dissipated<S: Scalar>(&self, motor_speed: S, wheel_speed: S) -> [S; 2] {
-        let slip = self.twist_rate(motor_speed, wheel_speed);
-        [motor_speed.square() * self.rotor_damping, slip.square() * self.damping]
+        let bearings = motor_speed.square() * self.rotor_damping;
+        [bearings, self.twist_rate(motor_speed, wheel_speed).square() * self.damping]
     }
 
     /// The state and the air-gap torque \[N m\] that hold a wheel speed \[rad/s\] and a shaft torque \[N m\].
@@ -132,12 +132,13 @@ mod tests {
         let state = TransmissionState { motor_speed: 320.0, twist: 3e-4 };
         let (air_gap_torque, wheel_speed) = (110.0, 106.0);
         let r = LAW.rates(&state, air_gap_torque, wheel_speed);
-        let growing = |h: f64| -> f64 {
-            LAW.stored(state.motor_speed + h * r.motor_speed, state.twist + h * r.twist).iter().sum()
+        let growing = |h: f64| {
+            let motor_speed = state.motor_speed + h * r.motor_speed;
+            0.5 * LAW.rotor_inertia * motor_speed * motor_speed + LAW.stored(state.twist + h * r.twist)
         };
         let stored = (growing(1e-3) - growing(-1e-3)) / 2e-3;
-        let lost: f64 = LAW.dissipated(state.motor_speed, wheel_speed).iter().sum();
-        let out = LAW.shaft_torque(&state, wheel_speed) * wheel_speed + lost;
+        let out = LAW.shaft_torque(&state, wheel_speed) * wheel_speed
+            + LAW.dissipated(state.motor_speed, wheel_speed).iter().sum::<f64>();
         let input = air_gap_torque * state.motor_speed;
         assert!((input - out - stored).abs() < 1e-9 * input);
     }
