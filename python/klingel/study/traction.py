@@ -95,7 +95,7 @@ def run(
 
     def work(name: str, progress: Progress) -> Finished:
         one = runs[name]
-        series = result.simulate(one.scenario, progress=progress)
+        series = result.simulate_spec(one.spec(), progress=progress)
         figures = traction(series, name=name, radius=one.scenario.vehicle.geometry.wheel_radius)
         passed = patch(series, *one.patch) if one.patch else None
         result.save(series, folder / "runs" / f"{name}.nc")

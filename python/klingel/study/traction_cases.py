@@ -10,6 +10,7 @@ from typing import Literal
 from klingel import control, library
 from klingel.control import SlipControl, Traction
 from klingel.errors import InputError
+from klingel.lower import Spec, lower
 from klingel.scenario import Scenario, Strategy
 from klingel.track import Adhesion, Track
 
@@ -25,6 +26,9 @@ STEP = 0.5e-3
 FRICTION = 0.35
 LOW = 0.08
 """Coefficients of friction outside and inside a patch of low adhesion."""
+
+OFFSET = 2e-3
+"""Displacement of the wheelsets at the start of runs on straight track [m]."""
 
 PATCH = 200.0
 """Length of the patch [m]."""
@@ -44,6 +48,8 @@ class TractionRun:
         strategy: `solid_like` or `irw_like`.
         scenario: what to simulate.
         patch: begin and end of the patch of low adhesion [m], None without.
+        offset: lateral displacement at which the wheelsets begin [m], so that on straight track there is something to
+            steer.
     """
 
     group: Group
@@ -52,6 +58,14 @@ class TractionRun:
     strategy: str
     scenario: Scenario
     patch: tuple[float, float] | None = None
+    offset: float = 0.0
+
+    def spec(self) -> Spec:
+        """The spec of the run, ready for `klingel.result.simulate_spec`."""
+        spec = lower(self.scenario)
+        names = [body["name"] for body in spec["bodies"] if ".wheelset" in body["name"]]
+        spec["run"]["kicks"] = [{"body": name, "displacement": [0.0, self.offset, 0.0]} for name in names]
+        return spec
 
 
 def traction_runs(groups: Iterable[str] = GROUPS, *, strategies: Iterable[str] = STRATEGIES) -> list[TractionRun]:
@@ -103,7 +117,9 @@ def _launch(strategy: str) -> Iterable[TractionRun]:
     time = (0.0, 2.0, 35.0, 70.0, 110.0, 160.0, 190.0)
     speed = tuple(v / 3.6 for v in (0.0, 0.0, 105.0, 185.0, 232.0, 265.0, 265.0))
     scenario = _scenario(strategy, Track.straight(10e3), 0.0, Traction(time, speed=speed))
-    yield TractionRun("launch", f"launch_{strategy}", "0 to 265 km/h on straight track", strategy, scenario)
+    yield TractionRun(
+        "launch", f"launch_{strategy}", "0 to 265 km/h on straight track", strategy, scenario, offset=OFFSET
+    )
 
 
 def _stop(strategy: str) -> Iterable[TractionRun]:
@@ -112,7 +128,9 @@ def _stop(strategy: str) -> Iterable[TractionRun]:
     end = 3.0 + v / 0.8
     traction = Traction((0.0, 3.0, end, end + 6.0), speed=(v, v, 0.0, 0.0))
     scenario = _scenario(strategy, Track.straight(1.6e3), v, traction)
-    yield TractionRun("stop", f"stop_{strategy}", "stop from 160 km/h on straight track", strategy, scenario)
+    yield TractionRun(
+        "stop", f"stop_{strategy}", "stop from 160 km/h on straight track", strategy, scenario, offset=OFFSET
+    )
 
 
 CURVES = {300.0: (78.0, 108.0, "120 m"), 800.0: (145.0, 176.0, "195 m")}
