@@ -99,7 +99,7 @@ def lower(scenario: Scenario) -> Spec:
         "maxwells": [*_primary_dampers(vehicle, wheels), *_secondary_dampers(vehicle)],
         "stops": [_lateral_stop(vehicle, bogie, x) for bogie, x in _bogies(vehicle)],
         "actuators": list(_actuators(vehicle, wheels)),
-        "drives": list(_drives(scenario, wheels)),
+        "drives": list(_drives(scenario, wheels, control)),
         "induction_drives": list(_induction_drives(vehicle, wheels, scenario.speed)),
         "drag": _drag(vehicle, scenario.headwind),
         "hold": _hold(vehicle) if scenario.traction is None else None,
@@ -299,8 +299,8 @@ def _actuators(vehicle: Vehicle, wheels: tuple[Axle, ...]) -> Iterator[Spec]:
             }
 
 
-def _drives(scenario: Scenario, wheels: tuple[Axle, ...]) -> Iterator[Spec]:
-    """DC drives; their fields move under a traction loop, else they are held."""
+def _drives(scenario: Scenario, wheels: tuple[Axle, ...], control: Spec | None) -> Iterator[Spec]:
+    """DC drives; their fields move where the controller commands a field voltage, else they are held."""
     vehicle = scenario.vehicle
     drive = vehicle.drive
     if not isinstance(drive, Drive):
@@ -309,14 +309,14 @@ def _drives(scenario: Scenario, wheels: tuple[Axle, ...]) -> Iterator[Spec]:
     if traction is None:
         point = operating_point(vehicle, scenario.speed)
         field_current, armature_voltage = point.field_current, point.armature_voltage
-        field = None
     else:
         field_current, armature_voltage = starting_point(vehicle, scenario.speed, margin=traction.field_margin)
-        field = {
-            "resistance": drive.field_resistance,
-            "inductance": drive.field_inductance,
-            "voltage_max": drive.field_voltage_max,
-        }
+    commanded = {command["target"] for command in control["commands"]} if control else set()
+    field = {
+        "resistance": drive.field_resistance,
+        "inductance": drive.field_inductance,
+        "voltage_max": drive.field_voltage_max,
+    }
     for axle in wheels:
         for side, _ in SIDES:
             name = f"{axle.name}.{side}"
@@ -328,7 +328,7 @@ def _drives(scenario: Scenario, wheels: tuple[Axle, ...]) -> Iterator[Spec]:
                 "armature_inductance": drive.armature_inductance,
                 "emf_constant": drive.emf_constant,
                 "field_current": field_current,
-                "field": field,
+                "field": field if f"{name}.field_voltage" in commanded else None,
                 "armature_voltage": armature_voltage,
                 "armature_voltage_max": drive.armature_voltage_max,
                 **_transmission(drive),

@@ -13,7 +13,7 @@ import xarray as xr
 import klingel as kl
 from klingel import library
 from klingel.control import IRWLike, SolidLike
-from klingel.control.common import WHEELSETS
+from klingel.control.basics import WHEELSETS
 from klingel.control.response import controller_response
 from klingel.core import core
 from klingel.drives import InductionTransfer, WheelPair, induction_point, induction_torque_max, operating_point

@@ -19,7 +19,13 @@ CREEPAGE_SPEED = 2.0
 SIDES = ("left", "right")
 
 GROWTH_WINDOW = 0.25
-"""Halves of a passage through a patch are compared over windows of this length [s]."""
+"""Quarters of a passage through a patch are compared if they last longer [s]."""
+
+STEADY_SPREAD = 5e-4
+"""Creepage that swings by less has no oscillation to speak of [-]."""
+
+GRIPS = 0.005
+"""A wheel with less creepage grips [-]."""
 
 
 @dataclass(frozen=True)
@@ -139,9 +145,10 @@ class PatchFigures:
 
     Attributes:
         creepage_max: largest |longitudinal creepage| of any wheel from its entry into the patch on.
-        recovery_s: how long after its wheel left the patch a pair gives again 90 % of the torque asked, the longest.
-        growth: largest ratio of the spread of creepage in the last quarter of a wheel's time in the patch over that in
-            the second quarter: above one something grows.
+        recovery_s: how long after it left the patch a wheelset last gave less than 90 % of the torque asked or slipped
+            with more than 0.5 % creepage, the longest.
+        growth: largest ratio of the swing of creepage (its standard deviation about a straight line) in the last
+            quarter of a wheel's time in the patch over that in the second quarter: above one something grows.
     """
 
     creepage_max: float
@@ -172,17 +179,23 @@ def patch(result: xr.Dataset, begin: float, end: float) -> PatchFigures:
         s = values(result, f"{wheelset.name}.s")
         inside, after = (s >= begin) & (s <= end), s > end
         given = values(result, f"{wheelset.name}.torque_asked")
-        if after.any():
-            left = float(time[after][0])
-            short = after & (np.abs(given) < 0.9 * np.abs(asked))
-            back = time[after & ~short]
-            recoveries.append(float(back[0]) - left if len(back) else np.inf)
+        slips = np.zeros(len(time), dtype=bool)
         for wheel in (wheelset.left, wheelset.right):
             creepage = values(result, f"{wheel}.creep_x")
             creepages.append(float(np.abs(creepage[inside | after]).max(initial=0.0)))
+            slips |= np.abs(creepage) > GRIPS
             within = creepage[inside]
             quarter = len(within) // 4
             if quarter * interval > GROWTH_WINDOW:
-                early, late = within[quarter : 2 * quarter], within[-quarter:]
-                growths.append(float(late.std() / max(early.std(), 1e-5)))
+                early, late = (_swing(part) for part in (within[quarter : 2 * quarter], within[-quarter:]))
+                growths.append(late / max(early, STEADY_SPREAD))
+        lacking = after & (slips | (np.abs(given) < 0.9 * np.abs(asked)))
+        if lacking.any():
+            recoveries.append(float(time[lacking][-1] - time[after][0]))
     return PatchFigures(max(creepages), max(recoveries), max(growths))
+
+
+def _swing(signal: Signal) -> float:
+    """Standard deviation about the straight line that fits best."""
+    place = np.arange(len(signal))
+    return float(np.std(signal - np.polyval(np.polyfit(place, signal, 1), place)))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from klingel.control.basics import Timing, scheduled
-from klingel.control.diagram import Diagram
+from klingel.control.diagram import BEYOND, Diagram
 from klingel.control.motors import DcMotors, InductionMotors, Motors, equal_currents, steering_voltage_max
 from klingel.control.traction import Traction
 from klingel.drives import induction_point, induction_torque_max, operating_point
@@ -72,7 +72,7 @@ class DrivenDc:
 
     def gain(self, d: Diagram, w: str, damping: Callable[[float], float]) -> str:
         """Through KT/(N Ra) of the measured field [V s/rad]"""
-        wanted = scheduled(d, "speed_loop.damping", damping)
+        wanted = self.traction.gripped(d, self.vehicle, w, scheduled(d, "speed_loop.damping", damping), self.timing)
         volts = d.sum(f"{w}.speed_loop.volts", {wanted: self.drive.gear_ratio * self.drive.armature_resistance})
         return d.quotient(f"{w}.speed_loop.gain", volts, self._torque_constant(d, w), floor=self._least_constant)
 
@@ -118,7 +118,8 @@ class DrivenDc:
         share = drive.traction_share * drive.armature_voltage_max
         driving = d.saturation(f"{w}.Ia.driving", current, 0.0, drive.armature_current_rated)
         room = d.sum(f"{w}.EMF.most", {driving: -drive.armature_resistance}, bias=traction.field_margin * share)
-        flux = d.sum(f"{w}.flux.speed", {turning: drive.emf_constant})
+        forward = d.saturation(f"{w}.flux.turning", turning, 1.0, BEYOND)  # backwards and at rest the field is full
+        flux = d.sum(f"{w}.flux.speed", {forward: drive.emf_constant})
         weakened = d.quotient(f"{w}.If.weakened", room, flux, floor=drive.emf_constant)
         rated = drive.field_current_rated
         wanted = d.saturation(f"{w}.If.wanted", weakened, FIELD_MIN * rated, rated)
@@ -166,7 +167,8 @@ class DrivenInduction:
 
     def gain(self, d: Diagram, w: str, damping: Callable[[float], float]) -> str:
         """The damping itself [N m s/rad]"""
-        return scheduled(d, "speed_loop.gain", damping)
+        wanted = scheduled(d, "speed_loop.damping", damping)
+        return self.traction.gripped(d, self.vehicle, w, wanted, self.timing)
 
     def per_speed(self, d: Diagram, w: str, ratio: float) -> float:
         """None: the drive makes up for its back-EMF itself."""

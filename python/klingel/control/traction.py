@@ -12,7 +12,7 @@ import numpy as np
 
 from klingel.control.basics import SPEED, Timing, check_positive
 from klingel.control.diagram import Diagram
-from klingel.control.slip import SlipControl
+from klingel.control.slip import SlipControl, turning_inertia
 from klingel.drives import running_resistance, traction_torque_max
 from klingel.errors import InputError
 from klingel.units import Quantity, to_si
@@ -94,6 +94,10 @@ class Traction:
         d.probe(f"{w}.torque_asked", "N m", torque)
         return torque
 
+    def gripped(self, d: Diagram, vehicle: Vehicle, w: str, damping: str, timing: Timing) -> str:
+        """A damping between the wheels of a pair [N m s/rad], less of it while a wheel slips."""
+        return damping if self.slip is None else self.slip.gripped(d, vehicle, w, damping, timing)
+
     def _demand(self, d: Diagram, vehicle: Vehicle) -> str:
         """The signal of the torque asked of every wheel [N m], within what the motors give and its rate."""
         speeds = speed_grid()
@@ -146,11 +150,7 @@ def speed_grid() -> tuple[float, ...]:
 
 def inertial_mass(vehicle: Vehicle) -> float:
     """Mass [kg] that a force along the track accelerates: with what wheels, and rotors through their gear, add."""
-    drive, bridge = vehicle.drive, vehicle.axle_bridge
-    assert drive is not None
-    assert bridge is not None
-    turning = bridge.wheel.inertia.spin + drive.rotor_inertia / drive.gear_ratio**2
-    return vehicle.total_mass + WHEELS * turning / vehicle.geometry.wheel_radius**2
+    return vehicle.total_mass + WHEELS * turning_inertia(vehicle) / vehicle.geometry.wheel_radius**2
 
 
 def corners(times: Iterable[float], values: Iterable[float]) -> tuple[list[float], list[float]]:

@@ -3,7 +3,6 @@ creepages over a patch of low adhesion."""
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from klingel.vehicle import Drive
+
 RATE = 100.0
 """Points drawn a second at most; a wheelset's displacement and a voltage move slowly against it [Hz]."""
 
@@ -30,16 +31,15 @@ CREEPAGE_LIMIT = 0.03
 SIDES = ("left", "right")
 
 
-def run_figure(result: xr.Dataset, *, title: str, traction_share: float) -> Figure:
+def run_figure(result: xr.Dataset, *, title: str, drive: Drive) -> Figure:
     """What a run under traction did, over time: five panels.
 
-    result: of a strategy with a traction loop and DC motors; traction_share: x, the part of VaMax that traction may
-    use. Errors: InputError for a channel that is missing.
+    result: of a strategy with a traction loop and these DC motors. Errors: InputError for a channel that is missing.
     """
     header = header_of(result)
     sets = [w.name for w in header.wheelsets]
-    drives = json.loads(result.attrs["spec"])["drives"][0]
-    most = float(drives["armature_voltage_max"])
+    most, traction_share = drive.armature_voltage_max, drive.traction_share
+    rated = {"armature_current": drive.armature_current_rated, "field_current": drive.field_current_rated}
     time, some = _thinned(result)
 
     def of(channel: str) -> NDArray[np.float64]:
@@ -75,16 +75,10 @@ def run_figure(result: xr.Dataset, *, title: str, traction_share: float) -> Figu
         voltage.annotate("VaMax", (time[-1], most), fontsize=7.5, ha="right", va="bottom")
         voltage.annotate("x VaMax", (time[-1], traction_share * most), fontsize=7.5, ha="right", va="top")
         voltage.set_ylabel("armature\nvoltage [V]")
-        current.plot(time, pair("armature_current", first), color=LINES[0][0], label="armature, first wheelset")
-        current.set_ylabel("armature\ncurrent [A]")
-        field = current.twinx()
-        field.grid(False)
-        field.spines["right"].set_visible(True)
-        field.plot(time, pair("field_current", first), color=LINES[1][0], ls=LINES[1][1], label="field (right scale)")
-        field.set_ylim(bottom=0.0)
-        field.set_ylabel("field\ncurrent [A]")
-        lines = [*current.get_lines(), *field.get_lines()]
-        current.legend(lines, [str(line.get_label()) for line in lines], loc="upper left", bbox_to_anchor=(1.12, 1.0))
+        for quantity, (color, line) in zip(("armature_current", "field_current"), LINES, strict=False):
+            share = 100.0 * pair(quantity, first) / rated[quantity]
+            current.plot(time, share, color=color, ls=line, label=quantity.partition("_")[0])
+        current.set_ylabel("currents over\nrated ones [%]")
         for name, (color, line) in zip(sets, LINES, strict=False):
             place.plot(time, 1e3 * of(f"{name}.y"), color=color, ls=line)
         reach = max(1.0, 1.15 * float(np.max([np.abs(1e3 * of(f"{s}.y")).max() for s in sets])))
@@ -94,8 +88,8 @@ def run_figure(result: xr.Dataset, *, title: str, traction_share: float) -> Figu
         place.set_ylim(-reach, reach)
         place.set_ylabel("wheelsets to\nthe right [mm]")
         place.set_xlabel("time  [s]")
-        for axis in (torque, voltage):
-            axis.legend(loc="upper left", bbox_to_anchor=(1.12, 1.05), handlelength=3.0)
+        for axis in (torque, voltage, current):
+            axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.05), handlelength=3.0)
         place.set_xlim(time[0], time[-1])
         return figure
 
@@ -141,6 +135,8 @@ def patch_figure(result: xr.Dataset, *, title: str, begin: float, end: float, ra
         torque.set_ylabel("torque per\nwheel [kN m]")
         for name, (color, line) in zip(sets, LINES, strict=False):
             place.plot(time, 1e3 * of(f"{name}.y"), color=color, ls=line)
+        reach = max(1.0, 1.15 * float(np.max([np.abs(1e3 * of(f"{s}.y")).max() for s in sets])))
+        place.set_ylim(-reach, reach)
         place.set_ylabel("wheelsets to\nthe right [mm]")
         place.set_xlabel("time  [s]")
         for axis in (rim, creep, torque):

@@ -196,7 +196,7 @@ def _parameter(kind: type[Any], name: str, value: object, key: str) -> Any:
         return _made(PARTS[name], value, place)
     if hints[name] is int and (type(value) is not int or value < 0):
         raise InputError.single(place, value, "is no whole number", remedy="give 0, 1, 2 or more")
-    if isinstance(value, list):
+    if isinstance(value, list) and hints[name] is not float:
         unit = UNITS.get(name, "1")
         return tuple(to_si(each, unit, key=f"{place}[{i}]") for i, each in enumerate(value))
     if hints[name] is float:

@@ -28,7 +28,7 @@ LOW = 0.08
 """Coefficients of friction outside and inside a patch of low adhesion."""
 
 OFFSET = 2e-3
-"""Displacement of the wheelsets at the start of runs on straight track [m]."""
+"""Displacement of the vehicle at the start of runs on straight track [m]."""
 
 PATCH = 200.0
 """Length of the patch [m]."""
@@ -48,7 +48,7 @@ class TractionRun:
         strategy: `solid_like` or `irw_like`.
         scenario: what to simulate.
         patch: begin and end of the patch of low adhesion [m], None without.
-        offset: lateral displacement at which the wheelsets begin [m], so that on straight track there is something to
+        offset: lateral displacement at which the vehicle begins [m], so that on straight track there is something to
             steer.
     """
 
@@ -63,8 +63,8 @@ class TractionRun:
     def spec(self) -> Spec:
         """The spec of the run, ready for `klingel.result.simulate_spec`."""
         spec = lower(self.scenario)
-        names = [body["name"] for body in spec["bodies"] if ".wheelset" in body["name"]]
-        spec["run"]["kicks"] = [{"body": name, "displacement": [0.0, self.offset, 0.0]} for name in names]
+        shift = {"displacement": [0.0, self.offset, 0.0]}
+        spec["run"]["kicks"] = [{"body": body["name"], **shift} for body in spec["bodies"]] if self.offset else []
         return spec
 
 

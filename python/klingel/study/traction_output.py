@@ -122,7 +122,7 @@ def _picture(folder: Path, each: Finished) -> Picture:
         )
         caption = "Grey: the leading wheelset's time in the patch; dashed: creepage of 3 %."
     else:
-        figure = run_figure(each.series, title=title, traction_share=vehicle.dc_drive.traction_share)
+        figure = run_figure(each.series, title=title, drive=vehicle.dc_drive)
         caption = "Torque and voltage of the first wheelset's motors and of all; grey: in the curve."
     svg = render(figure, "svg", name=run.name)
     write_whole(folder / f"{run.name}.svg", svg)
