@@ -52,8 +52,8 @@ def test_every_motor_and_actuator_is_driven_and_names_are_unique(strategy: Solid
     assert sorted(c["target"] for c in spec["commands"]) == sorted(f"{w.name}.{s}" for w in WHEELSETS for s in sides)
     names = spec["measurements"] + [block["name"] for block in spec["blocks"]]
     assert len(names) == len(set(names))
-    probes = {"steering_voltage", "steering_moment_command"} | (
-        {"integral_share"} if isinstance(strategy, IRWLike) else set()
+    probes = {"steering_voltage", "steering_moment_command", "steering_feedback"} | (
+        {"within_reach"} if isinstance(strategy, IRWLike) else set()
     )
     assert {p["channel"].rsplit(".", 1)[1] for p in spec["probes"]} == probes
 

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 Curvature = Literal["gyro", "database"]
 
 REACH_ROUNDED = 1e-3
-"""Over which the integral of the steering loop fades out beyond its reach [m]."""
+"""Over which the limit of the steering loop's integral falls to nil beyond its reach [m]."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,9 @@ class IRWLike:
         speed: the gain also damps the wheelset's yaw, by K lambda/r0, which the actuators' lag bears so far.
     integral_time: Ti of the steering loop [s], ten times the loop's own time so that it costs little phase.
     integral_reach: displacement up to which the integral acts [m]. Beyond it, near the flange, adhesion cannot carry
-        the lateral force, and an integral would only grow.
+        the lateral force, and an integral would only grow: there it is emptied.
+    integral_share: of the largest moment of the actuators that the integral may use: three times what it takes at
+        friction 0.25; more would only wind up.
     current_frequency: crossover of the differential current loop of DC motors [Hz]: above all motion of the wheelset,
         below what a delay of two samples bears.
     yaw_frequency: low-pass of the wheelset's yaw rate [Hz]. Above it lambda psi'/r0 stays in the speed difference, as
@@ -76,6 +78,7 @@ class IRWLike:
     slow_speed: float = 24.0
     integral_time: float = 1.0
     integral_reach: float = 4e-3
+    integral_share: float = 0.1
     current_frequency: float = 30.0
     yaw_frequency: float = 1.5
     gyro_frequency: float = 1.5
@@ -90,7 +93,7 @@ class IRWLike:
         if self.curvature not in get_args(Curvature):
             remedy = nearest(self.curvature, get_args(Curvature))
             raise InputError.single("control.curvature", self.curvature, "is not known", remedy=remedy)
-        loops = ("frequency", "slow_speed", "integral_time", "integral_reach", "current_frequency")
+        loops = ("frequency", "slow_speed", "integral_time", "integral_reach", "integral_share", "current_frequency")
         sensors = ("yaw_frequency", "gyro_frequency", "extrapolation", "roll_frequency", "sensor_frequency")
         check_positive(self, (*loops, *sensors))
 
@@ -151,19 +154,22 @@ class IRWLike:
         else:
             rho, roll_rate = database_curve(d, plant, w, track, self.timing)
         error, limit = f"{w.name}.wd.error", 0.5 * plant.moment_max
-        held = d.product(f"{w.name}.steering.integral_gain", integral, self._integral_share(d, plant, w))
-        feedback = d.pi(f"{w.name}.M.feedback", error, proportional=proportional, integral=held, limit=limit)
+        reach = d.sum(f"{w.name}.M.reach", {self._within_reach(d, plant, w): self.integral_share * plant.moment_max})
+        held = d.pi(f"{w.name}.M.integral", error, proportional=0.0, integral=integral, limit=reach)
+        both = d.sum(f"{w.name}.M.unlimited", {error: proportional, held: 1.0})
+        feedback = d.saturation(f"{w.name}.M.feedback", both, -limit, limit)
+        d.probe(f"{w.name}.steering_feedback", "N m", feedback)
         gyroscopic = gyroscopic_moment(d, plant, w, roll_rate)
         feedforward = steering_feedforward(
             d, plant, self.contact, w, rho=rho, roll_rate=roll_rate, gyroscopic=gyroscopic
         )
         command_steering(d, plant, w, d.sum(f"{w.name}.M", {feedforward: 1.0, feedback: 1.0}), self.timing)
 
-    def _integral_share(self, d: Diagram, plant: Plant, w: Wheelset) -> str:
+    def _within_reach(self, d: Diagram, plant: Plant, w: Wheelset) -> str:
         """1 while the displacement that the error tells, e r0^2/(V gamma), is one to be removed; 0 near the flange."""
         per_error = scheduled(d, f"{w.name}.y.gain", lambda v: -(plant.radius**2) / (self.contact.conicity * v))
         y = d.product(f"{w.name}.y.told", f"{w.name}.wd.error", per_error)
         full, out = self.integral_reach, self.integral_reach + REACH_ROUNDED
-        share = d.lookup(f"{w.name}.integral_share", y, (-out, -full, full, out), (0.0, 1.0, 1.0, 0.0))
-        d.probe(f"{w.name}.integral_share", "1", share)
+        share = d.lookup(f"{w.name}.within_reach", y, (-out, -full, full, out), (0.0, 1.0, 1.0, 0.0))
+        d.probe(f"{w.name}.within_reach", "1", share)
         return share

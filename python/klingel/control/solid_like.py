@@ -43,6 +43,8 @@ class SolidLike:
     notch_frequency, notch_depth, notch_width: of the transmission's torsion mode with the wheel held by creep [Hz].
     yaw_frequency: crossover of the yaw-moment loop [Hz], below the hunting band of 2 to 8 Hz.
     yaw_speed: running speed below which that falls with the speed [m/s], as the hunting does.
+    yaw_share: of the largest moment of the actuators that the yaw-moment loop may add: three times what it takes at
+        friction 0.25; more would only wind up where adhesion is lost.
     sensor_frequency: low-pass of the inertial sensors [Hz], above the body's own modes near 1 Hz.
     timing: sampling and delays. contact: what the design assumes of wheel and rail.
     traction: loop that drives and brakes the vehicle through the same motors; None holds their field and mean voltage.
@@ -64,6 +66,7 @@ class SolidLike:
     notch_width: float = 0.5
     yaw_frequency: float = 0.7
     yaw_speed: float = 28.0
+    yaw_share: float = 0.1
     sensor_frequency: float = 2.0
     timing: Timing = field(default_factory=Timing)
     contact: ContactDesign = field(default_factory=ContactDesign)
@@ -80,7 +83,7 @@ class SolidLike:
             "notch_depth",
             "notch_width",
         )
-        check_positive(self, (*names, "yaw_frequency", "yaw_speed", "sensor_frequency"))
+        check_positive(self, (*names, "yaw_frequency", "yaw_speed", "yaw_share", "sensor_frequency"))
 
     def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any]:
         """The block diagram for a vehicle at a speed [m/s] on a track whose curvature the database knows.
@@ -132,6 +135,7 @@ class SolidLike:
             d, "yaw_loop.crossover", lambda v: 2.0 * math.pi * self.yaw_frequency * min(1.0, v / self.yaw_speed)
         )
         feedback = d.pi(
-            f"{w.name}.M.feedback", error, proportional=0.0, integral=crossover, limit=0.5 * plant.moment_max
+            f"{w.name}.M.feedback", error, proportional=0.0, integral=crossover, limit=self.yaw_share * plant.moment_max
         )
+        d.probe(f"{w.name}.steering_feedback", "N m", feedback)
         command_steering(d, plant, w, d.sum(f"{w.name}.M", {feedforward: 1.0, feedback: 1.0}), self.timing)

@@ -63,7 +63,8 @@ impl Pi {
         let given = self.limit(wanted, signals);
         // Held while it would push the output further past the limit, free to come back.
         let free = ((wanted - given) * growth).le(S::zero());
-        memory[0] = S::select(free, memory[0] + growth, memory[0]);
+        // Nor does it stay beyond a limit that moves in.
+        memory[0] = self.limit(S::select(free, memory[0] + growth, memory[0]), signals);
         given
     }
 }
@@ -266,6 +267,24 @@ mod tests {
             samples += 1;
         }
         assert_eq!(samples, 0);
+    }
+
+    #[test]
+    fn a_limit_that_moves_in_takes_the_integral_with_it() {
+        let mut block = Kept::new(Block::Pi(Pi {
+            input: 0,
+            proportional: Operand::Number(0.0),
+            rate: Operand::Number(10.0),
+            lower: Some(Operand::Number(0.0)),
+            upper: Some(Operand::Slot(1)),
+        }));
+        block.reset(&[0.0, 3.0]);
+        for _ in 0..500 {
+            block.step(&[1.0, 3.0]);
+        }
+        assert_eq!(block.step(&[1.0, 3.0]), 3.0);
+        assert_eq!(block.step(&[1.0, 0.5]), 0.5);
+        assert!(block.step(&[0.0, 3.0]) < 0.52);
     }
 
     #[test]
