@@ -23,8 +23,8 @@ wheelset that bounces on its contact springs near 180 Hz; this project's choice.
 HOLD_FREQUENCY = 0.1
 """Of the ideal force that holds the speed [Hz]: slow against everything that the study looks at; critically damped."""
 
-IMPLICIT_RATE = 20e3
-"""Speed below which steps are implicit, over the step [m/s2]: explicit ones are stable above 17e3 or so."""
+IMPLICIT_RATE = 25e3
+"""Speed below which steps are implicit, over the step [m/s2]: explicit ones are stable above 21e3 or so."""
 
 Spec = dict[str, Any]
 Point = list[float]

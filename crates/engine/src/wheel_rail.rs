@@ -14,6 +14,8 @@ use klingel_physics::math::Vec3;
 
 /// A patch counts towards the reported contact angle above this load \[N\].
 const REPORTED_LOAD: f64 = 1000.0;
+/// Transient creepages stay below this part of mu N/(G a b C11), at a little more than 3 of which patches slide.
+const SLIDING: f64 = 4.0;
 /// A patch steeper than this is reported as steep \[rad\]: 15 degrees.
 const STEEP: f64 = 0.261_799_387_799_149_4;
 
@@ -126,7 +128,7 @@ fn wheel_on_rail<S: Scalar>(
         let creepages = [slip_T.x() / v_ref, slip_T.dot(across) / v_ref, w_T.dot(into_rail) / v_ref];
         Touch { point_F, point_T, across, into_rail, approach, normal, mean_speed, v_ref, creepages }
     };
-    let lag = wheel.stick.map(|first| lag(m.creep_floor, patches.iter().map(|p| (p, touch(p))), first, x, dx));
+    let lag = wheel.stick.map(|first| lag(m, wheel, patches.iter().map(|p| (p, touch(p))), first, x, dx));
 
     let mut state = WheelState { friction: standing_friction, ..WheelState::default() };
     let mut moment_T = Vec3::zero();
@@ -206,19 +208,21 @@ fn sense<S: Scalar>(parts: S) -> S {
 /// What the transient creepages of a sticking wheel are ahead of the quasi-steady ones, on average by load; their rates
 /// into `dx`. Where the patches of a wheel slip differently, that difference stays quasi-steady.
 fn lag<'a, S: Scalar>(
-    floor: f64,
+    m: &Model,
+    wheel: &Wheel,
     touches: impl Iterator<Item = (&'a Patch<S>, Touch<S>)>,
     first: usize,
     x: &[S],
     dx: &mut [S],
 ) -> [S; 2] {
-    // a wheel in the air has a patch of 5 mm with 1 N
-    let mut load = S::one();
+    // a wheel in the air has a patch of 5 mm with 1 N, and with G a b C11 over the load as under a wheel of some kN
+    let (mut load, mut stiffness) = (S::one(), S::constant(300.0));
     let (mut length, mut speed) = (S::constant(5e-3), S::zero());
     let (mut slip, mut quasi_steady) = ([S::zero(); 2], [S::zero(); 2]);
     for (patch, touch) in touches.filter(|(patch, _)| patch.active) {
         load += touch.normal;
         length += patch.a * touch.normal;
+        stiffness += m.creep.stiffness(patch.a, patch.b);
         speed += touch.mean_speed * touch.normal;
         for i in 0..2 {
             slip[i] += touch.creepages[i] * touch.v_ref * touch.normal;
@@ -226,7 +230,9 @@ fn lag<'a, S: Scalar>(
         }
     }
     let creepage = [x[first], x[first + 1]];
-    let rates = stick_rates(creepage, slip.map(|w| w / load), speed / load, relaxation_length(length / load), floor);
+    let (slip, length) = (slip.map(|w| w / load), relaxation_length(length / load));
+    let largest = load * (SLIDING * wheel.friction) / stiffness;
+    let rates = stick_rates(creepage, slip, speed / load, length, largest, m.creep_floor);
     dx[first..first + 2].copy_from_slice(&rates);
     [0, 1].map(|i| creepage[i] - quasi_steady[i] / load)
 }

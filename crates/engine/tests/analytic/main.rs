@@ -15,4 +15,5 @@ mod limits;
 mod linear;
 mod sampling;
 mod scalars;
+mod standstill;
 mod wheelset;

@@ -163,13 +163,20 @@ impl CreepForce {
                 let [a, b, normal_force, friction, xi, eta, phi] = x;
                 let c = RollingContact { a, b, normal_force, friction, xi, eta, phi };
                 let [x, y, _] = linear::linear(&self.kalker, self.shear_modulus, &c);
-                let share = (force[0].hypot(force[1]) / x.hypot(y).max(f64::MIN_POSITIVE)).min(1.0);
+                // a newton on both keeps the whole slope where there is no creepage
+                let share = ((force[0].hypot(force[1]) + 1.0) / (x.hypot(y) + 1.0)).min(1.0);
                 let [c11, c22, ..] = self.kalker.at(a / b).map(|c| -share * self.shear_modulus * a * b * c);
                 let mut slopes = [[0.0; 7]; 3];
                 (slopes[0][4], slopes[1][5]) = (c11, c22);
                 (force, slopes)
             },
         )
+    }
+
+    /// G a b C11 \[N\]: longitudinal force over creepage of a patch in adhesion.
+    pub fn stiffness<S: Scalar>(&self, a: S, b: S) -> S {
+        let [c11, ..] = self.kalker.at(a / b);
+        a * b * c11 * self.shear_modulus
     }
 
     fn evaluate<T: Strip>(&self, [a, b, normal_force, friction, xi, eta, phi]: [T; 7]) -> [T; 3] {

@@ -4,9 +4,6 @@
 use crate::Scalar;
 use core::f64::consts::PI;
 
-/// Transient creepages stay below this: beyond what any patch needs to slide (3 mu N/(G a b C11) is 0.02 for the largest
-/// loads), so that a wheel pushed aside winds nothing up.
-const LARGEST: f64 = 0.03;
 /// Rolling speed, in parts of the least speed, below which the creepage hardly fades.
 const RESTING: f64 = 0.01;
 
@@ -19,21 +16,22 @@ pub fn relaxation_length<S: Scalar>(a: S) -> S {
 /// Rates \[1/s\] of the transient creepages (along, across) of a wheel.
 ///
 /// sigma xi' = w - |V| xi - (w xi)+ xi/xi_max^2: `slip` w of the wheel over the rail and rolling speed V \[m/s\],
-/// `length` sigma \[m\]. The last term limits them; it and all rolling slower than a hundredth of `least` \[m/s\] fade so
-/// that the quasi-steady creepage w/V is what remains at speed, and nothing fades at rest.
+/// `length` sigma \[m\]. The last term keeps them below `largest` = xi_max, so that a wheel pushed aside winds nothing up.
+/// It fades at speeds beyond `least` \[m/s\], where the quasi-steady creepage w/V is what remains; rolling slower than a
+/// hundredth of that fades too, so that nothing is lost at rest.
 ///
 /// ```
 /// use klingel_physics::contact::creep::stick_rates;
-/// let [xi, eta] = stick_rates([1e-3, 0.0], [0.03, 0.0], 30.0, 5e-3, 0.1);
+/// let [xi, eta] = stick_rates([1e-3, 0.0], [0.03, 0.0], 30.0, 5e-3, 0.02, 0.1);
 /// assert!(xi.abs() < 1e-4 && eta == 0.0); // creepage 0.03/30 is reached
-/// assert_eq!(stick_rates([1e-3, 2e-3], [0.0, 0.0], 0.0, 5e-3, 0.1), [0.0, 0.0]); // a spring that is held
+/// assert_eq!(stick_rates([1e-3, 2e-3], [0.0, 0.0], 0.0, 5e-3, 0.02, 0.1), [0.0, 0.0]); // a spring that is held
 /// ```
-pub fn stick_rates<S: Scalar>(creepage: [S; 2], slip: [S; 2], speed: S, length: S, least: f64) -> [S; 2] {
+pub fn stick_rates<S: Scalar>(creepage: [S; 2], slip: [S; 2], speed: S, length: S, largest: S, least: f64) -> [S; 2] {
     let square = speed.square();
     let rolling = square / (square + (RESTING * least) * (RESTING * least)).sqrt();
     let resting = (square / (least * least) + 1.0).recip();
     let winding = (slip[0] * creepage[0] + slip[1] * creepage[1]).positive();
-    let fading = rolling + winding * resting / (LARGEST * LARGEST);
+    let fading = rolling + winding * resting / largest.square();
     [0, 1].map(|i| (slip[i] - fading * creepage[i]) / length)
 }
 
@@ -41,11 +39,13 @@ pub fn stick_rates<S: Scalar>(creepage: [S; 2], slip: [S; 2], speed: S, length: 
 mod tests {
     use super::*;
 
+    const LARGEST: f64 = 0.02;
+
     /// Euler in steps of length/50 of way.
     fn after(way: f64, mut creepage: [f64; 2], direction: [f64; 2], speed: f64) -> [f64; 2] {
         let (length, dt) = (5e-3, 1e-4);
         for _ in 0..(way / dt).round() as usize {
-            let rates = stick_rates(creepage, direction, speed, length, 0.1);
+            let rates = stick_rates(creepage, direction, speed, length, LARGEST, 0.1);
             (0..2).for_each(|i| creepage[i] += dt * rates[i]);
         }
         creepage
