@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from klingel.drives.characteristic import excitation
 from klingel.drives.demand import Resistance, torque_demand
-from klingel.drives.motor import field_current, torque_constant, wheel_torque_max
-from klingel.errors import InputError
+from klingel.drives.motor import torque_constant, wheel_torque_max
 
 if TYPE_CHECKING:
     from klingel.vehicle import Vehicle
@@ -21,7 +21,8 @@ class OperatingPoint:
 
     speed [m/s]; resistance: per wheel [N]; wheel_torque: on the wheel [N m]; motor_speed: wM [rad/s];
     field_current: If [A]; field_current_normalised: If over its rated value [-]; armature_current: Ia [A];
-    torque_constant: KT [N m/A]; armature_voltage: x VaMax [V]; wheel_torque_max: the largest TW of Eq. (5) [N m].
+    torque_constant: KT [N m/A]; armature_voltage: x VaMax, less below the base speed [V]; wheel_torque_max: the largest
+    TW of Eq. (5) [N m].
     """
 
     speed: float
@@ -41,8 +42,8 @@ def operating_point(vehicle: Vehicle, speed: float, *, resistance: Resistance | 
 
     resistance: of the vehicle [N] over its speed [m/s]; None for the formula of the vehicle's file.
     The friction CM wM of the rotor is added to the torque asked of Eq. (5), so that the wheel really gets its torque.
-    Below the base speed Eq. (5) would ask for more field than the motor has.
-    Errors: InputError for a vehicle without DC motors, a torque out of reach, a field current above the rated one.
+    Below the base speed Eq. (5) would ask for more field than the motor has: the field is rated there and the armature
+    voltage lower. Errors: InputError for a vehicle without DC motors, a torque out of reach, a negative speed.
 
     >>> from klingel import library
     >>> point = operating_point(library.vehicle("mechatronic_irw"), 176 / 3.6)
@@ -51,15 +52,8 @@ def operating_point(vehicle: Vehicle, speed: float, *, resistance: Resistance | 
     """
     drive = vehicle.dc_drive
     demand = torque_demand(vehicle, drive, speed, resistance)
-    current = field_current(drive, demand.air_gap, demand.motor_speed)
-    if current > drive.field_current_rated:
-        raise InputError.single(
-            "speed",
-            speed,
-            f"needs a field of {current:.4g} A, rated {drive.field_current_rated:.4g} A",
-            remedy=f"run above the base speed, {speed * current / drive.field_current_rated:.4g} m/s",
-        )
-    kt = torque_constant(drive, current)
+    excited = excitation(drive, demand.air_gap, demand.motor_speed)
+    current = excited.field_current
     return OperatingPoint(
         speed=speed,
         resistance=demand.resistance,
@@ -67,9 +61,9 @@ def operating_point(vehicle: Vehicle, speed: float, *, resistance: Resistance | 
         motor_speed=demand.motor_speed,
         field_current=current,
         field_current_normalised=current / drive.field_current_rated,
-        armature_current=drive.gear_ratio * demand.air_gap / kt,
-        torque_constant=kt,
-        armature_voltage=drive.traction_share * drive.armature_voltage_max,
+        armature_current=excited.armature_current,
+        torque_constant=torque_constant(drive, current),
+        armature_voltage=excited.armature_voltage,
         wheel_torque_max=wheel_torque_max(drive, demand.motor_speed),
     )
 
