@@ -30,8 +30,7 @@ class Demand:
 def torque_demand(vehicle: Vehicle, drive: Transmission, speed: float, resistance: Resistance | None = None) -> Demand:
     """What each wheel of a vehicle with `drive` needs at `speed` [m/s].
 
-    resistance: of the vehicle [N]; None for the formula of its file. Nothing at rest.
-    Error: InputError for a negative speed.
+    resistance: of the vehicle [N]; None for the formula of its file. Error: InputError for a negative speed.
 
     >>> from klingel import library
     >>> vehicle = library.vehicle("mechatronic_irw")
@@ -41,10 +40,9 @@ def torque_demand(vehicle: Vehicle, drive: Transmission, speed: float, resistanc
     """
     if not speed >= 0.0:
         raise InputError.single("speed", speed, "must not be negative [m/s]", remedy="give the running speed")
-    if speed == 0.0:
-        return Demand(0.0, 0.0, 0.0, 0.0)
     radius = vehicle.geometry.wheel_radius
-    share = (resistance or running_resistance(vehicle))(speed) / WHEELS
+    # a vehicle at rest needs no torque, though formulas of the running resistance begin above zero
+    share = (resistance or running_resistance(vehicle))(speed) / WHEELS if speed > 0.0 else 0.0
     motor_speed = speed / radius / drive.gear_ratio
     friction = drive.rotor_damping * motor_speed / drive.gear_ratio
     return Demand(share, share * radius, motor_speed, share * radius + friction)

@@ -7,13 +7,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from klingel.drives.characteristic import excitation
 from klingel.drives.demand import torque_demand
 from klingel.drives.formulas import Resistance
-from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
-from klingel.errors import InputError
+from klingel.drives.motor import torque_constant, wheel_torque_max
 
 if TYPE_CHECKING:
-    from klingel.vehicle import Drive, Vehicle
+    from klingel.vehicle import Vehicle
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,8 @@ class OperatingPoint:
 
     speed [m/s]; resistance: per wheel [N]; wheel_torque: on the wheel [N m]; motor_speed: wM [rad/s];
     field_current: If [A]; field_current_normalised: If over its rated value [-]; armature_current: Ia [A];
-    torque_constant: KT [N m/A]; armature_voltage: x VaMax [V]; wheel_torque_max: the largest TW of Eq. (5) [N m].
+    torque_constant: KT [N m/A]; armature_voltage: x VaMax, less below the base speed [V]; wheel_torque_max: the largest
+    TW of Eq. (5) [N m].
     """
 
     speed: float
@@ -42,8 +43,8 @@ def operating_point(vehicle: Vehicle, speed: float, *, resistance: Resistance | 
 
     resistance: of the vehicle [N] over its speed [m/s]; None for the formula of the vehicle's file.
     The friction CM wM of the rotor is added to the torque asked of Eq. (5), so that the wheel really gets its torque.
-    Below the base speed Eq. (5) would ask for more field than the motor has.
-    Errors: InputError for a vehicle without DC motors, a torque out of reach, a field current above the rated one.
+    Below the base speed Eq. (5) would ask for more field than the motor has: the field is rated there and the armature
+    voltage lower. Errors: InputError for a vehicle without DC motors, a torque out of reach, a negative speed.
 
     >>> from klingel import library
     >>> point = operating_point(library.vehicle("mechatronic_irw"), 176 / 3.6)
@@ -52,17 +53,8 @@ def operating_point(vehicle: Vehicle, speed: float, *, resistance: Resistance | 
     """
     drive = vehicle.dc_drive
     demand = torque_demand(vehicle, drive, speed, resistance)
-    if speed == 0.0:
-        return _at_rest(drive)
-    current = field_current(drive, demand.air_gap, demand.motor_speed)
-    if current > drive.field_current_rated:
-        raise InputError.single(
-            "speed",
-            speed,
-            f"needs a field of {current:.4g} A, rated {drive.field_current_rated:.4g} A",
-            remedy=f"run above the base speed, {speed * current / drive.field_current_rated:.4g} m/s",
-        )
-    kt = torque_constant(drive, current)
+    excited = excitation(drive, demand.air_gap, demand.motor_speed)
+    current = excited.field_current
     return OperatingPoint(
         speed=speed,
         resistance=demand.resistance,
@@ -70,27 +62,10 @@ def operating_point(vehicle: Vehicle, speed: float, *, resistance: Resistance | 
         motor_speed=demand.motor_speed,
         field_current=current,
         field_current_normalised=current / drive.field_current_rated,
-        armature_current=drive.gear_ratio * demand.air_gap / kt,
-        torque_constant=kt,
-        armature_voltage=drive.traction_share * drive.armature_voltage_max,
-        wheel_torque_max=wheel_torque_max(drive, demand.motor_speed),
-    )
-
-
-def _at_rest(drive: Drive) -> OperatingPoint:
-    """Standing without torque: full field, no voltage."""
-    current = drive.field_current_rated
-    return OperatingPoint(
-        speed=0.0,
-        resistance=0.0,
-        wheel_torque=0.0,
-        motor_speed=0.0,
-        field_current=current,
-        field_current_normalised=1.0,
-        armature_current=0.0,
+        armature_current=excited.armature_current,
         torque_constant=torque_constant(drive, current),
-        armature_voltage=0.0,
-        wheel_torque_max=wheel_torque(drive, current, 0.0),
+        armature_voltage=excited.armature_voltage,
+        wheel_torque_max=wheel_torque_max(drive, demand.motor_speed),
     )
 
 

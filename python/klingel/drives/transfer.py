@@ -5,6 +5,7 @@ Signals have the paper's names; u, Td, wd and Id are half differences of the pai
 from __future__ import annotations
 
 import dataclasses
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ from numpy.polynomial import Polynomial
 from klingel.drives.motor import torque_constant
 
 if TYPE_CHECKING:
-    from klingel.vehicle import Drive
+    from klingel.vehicle import Drive, InductionDrive
 
 S = Polynomial([0.0, 1.0])
 
@@ -93,8 +94,78 @@ def _of_speed(transfer: Rational) -> Rational:
     return dataclasses.replace(transfer, input="wd", output="Td")
 
 
+class ShaftTransfer(ABC):
+    """Eqs (12) to (14), (16), (24), (25), (27) to (29) for a motor of any kind behind its gearbox and shaft."""
+
+    transmission_stiffness: float
+    transmission_damping: float
+
+    @property
+    @abstractmethod
+    def A(self) -> Rational:
+        """Air-gap torque at the wheel over what commands the motor."""
+
+    @property
+    @abstractmethod
+    def C(self) -> Rational:
+        """Torque at the wheel over rotor speed (wE)."""
+
+    @property
+    def _lag(self) -> Polynomial:
+        """Denominator of A over that of C."""
+        return Polynomial([1.0])
+
+    @property
+    def B(self) -> Rational:
+        """Shaft torque over slip speed, KOUT/s + COUT, Eq. (16)."""
+        return Rational(self.transmission_damping * S + self.transmission_stiffness, S)
+
+    @property
+    def _common(self) -> Polynomial:
+        """Denominator of Gu and Gv: the C + B of Eqs (13) and (14) times both their denominators."""
+        return (self.C.numerator * S + self.B.numerator * self.C.denominator) * self._lag
+
+    @property
+    def Gu(self) -> Rational:
+        """TOUT over the command, A B/(C + B), Eq. (13)."""
+        return Rational(self.A.numerator * self.B.numerator, self._common, self.A.input, "TOUT")
+
+    @property
+    def Gv(self) -> Rational:
+        """TOUT/wOUT = - C B/(C + B), Eq. (14): a wheel that runs ahead is held back, so minus."""
+        return Rational(-self.C.numerator * self.B.numerator * self._lag, self._common, "wOUT", "TOUT")
+
+    def torque_plant(self, pair: WheelPair) -> Rational:
+        """Td/u = Gu/(1 - Gv Gw), Eq. (27): the design plant of the torque loop."""
+        return Rational(self.Gu.numerator * pair.Gw.denominator, self._closed(pair), "u", "Td")
+
+    def speed_plant(self, pair: WheelPair) -> Rational:
+        """wd/u = Gu Gw/(1 - Gv Gw), Eq. (29): the design plant of the speed loop."""
+        return Rational(self.Gu.numerator, self._closed(pair), "u", "wd")
+
+    def open_loop(self) -> TwoInputs:
+        """Td = Gu u + Gv wd, Eq. (24)."""
+        return TwoInputs(dataclasses.replace(self.Gu, input="u", output="Td"), _of_speed(self.Gv))
+
+    def torque_loop(self, controller: Rational) -> TwoInputs:
+        """Td = [Gu K/(1 + Gu K)] Td_command + [Gv/(1 + Gu K)] wd, Eq. (25), with the torque controller K(s)."""
+        closed = self._common * controller.denominator + self.Gu.numerator * controller.numerator
+        command = Rational(self.Gu.numerator * controller.numerator, closed, "Td_command", "Td")
+        return TwoInputs(command, _of_speed(Rational(self.Gv.numerator * controller.denominator, closed)))
+
+    def speed_loop(self, controller: Rational) -> TwoInputs:
+        """Td = Gu K wd_command + (Gv - Gu K) wd, Eq. (28), with the speed controller K(s)."""
+        gain = self.Gu.numerator * controller.numerator
+        both = self._common * controller.denominator
+        coupling = self.Gv.numerator * controller.denominator - gain
+        return TwoInputs(Rational(gain, both, "wd_command", "Td"), _of_speed(Rational(coupling, both)))
+
+    def _closed(self, pair: WheelPair) -> Polynomial:
+        return self._common * pair.Gw.denominator - self.Gv.numerator
+
+
 @dataclass(frozen=True)
-class DriveTransfer:
+class DriveTransfer(ShaftTransfer):
     """Armature voltage u and wheel speed wOUT to shaft torque TOUT at one field current.
 
     >>> from klingel import library
@@ -136,38 +207,14 @@ class DriveTransfer:
     @property
     def A(self) -> Rational:
         """Air-gap torque at the wheel over voltage, (KT/N)/(La s + Ra), Eq. (15)."""
-        return Rational(Polynomial([self.torque_constant / self.gear_ratio]), self._armature)
-
-    @property
-    def B(self) -> Rational:
-        """Shaft torque over slip speed, KOUT/s + COUT, Eq. (16)."""
-        return Rational(self.transmission_damping * S + self.transmission_stiffness, S)
+        return Rational(Polynomial([self.torque_constant / self.gear_ratio]), self._armature, "Va", "torque")
 
     @property
     def C(self) -> Rational:
         """Torque at the wheel over rotor speed (wE), (JM s + CM)/N^2 + (KT/N) A, Eq. (17)."""
         rotor = self.rotor_inertia * S + self.rotor_damping
         numerator = (rotor * self._armature + self.torque_constant**2) / self.gear_ratio**2
-        return Rational(numerator, self._armature)
-
-    @property
-    def _common(self) -> Polynomial:
-        """Denominator of Gu and Gv: the C + B of Eqs (13) and (14) times both their denominators."""
-        return self.C.numerator * S + self.B.numerator * self._armature
-
-    @property
-    def Gu(self) -> Rational:
-        """TOUT/Va = A B/(C + B), Eq. (13)."""
-        return Rational(self.A.numerator * self.B.numerator, self._common, "Va", "TOUT")
-
-    @property
-    def Gv(self) -> Rational:
-        """TOUT/wOUT = - C B/(C + B), Eq. (14): a wheel that runs ahead is held back, so minus."""
-        return Rational(-self.C.numerator * self.B.numerator, self._common, "wOUT", "TOUT")
-
-    def torque_plant(self, pair: WheelPair) -> Rational:
-        """Td/u = Gu/(1 - Gv Gw), Eq. (27): the design plant of the torque loop."""
-        return Rational(self.Gu.numerator * pair.Gw.denominator, self._closed(pair), "u", "Td")
+        return Rational(numerator, self._armature, "wE", "torque")
 
     def current_plant(self, pair: WheelPair) -> Rational:
         """Half difference of the armature currents over u, from Eqs (2), (10) and (27): plant of a current loop."""
@@ -176,26 +223,43 @@ class DriveTransfer:
         numerator = rotor * torque.denominator + self.gear_ratio * self.torque_constant * torque.numerator
         return Rational(numerator, (rotor * self._armature + self.torque_constant**2) * torque.denominator, "u", "Id")
 
-    def speed_plant(self, pair: WheelPair) -> Rational:
-        """wd/u = Gu Gw/(1 - Gv Gw), Eq. (29): the design plant of the speed loop."""
-        return Rational(self.Gu.numerator, self._closed(pair), "u", "wd")
 
-    def open_loop(self) -> TwoInputs:
-        """Td = Gu u + Gv wd, Eq. (24)."""
-        return TwoInputs(dataclasses.replace(self.Gu, input="u", output="Td"), _of_speed(self.Gv))
+@dataclass(frozen=True)
+class InductionTransfer(ShaftTransfer):
+    """Torque command u (at the wheel) and wheel speed wOUT to shaft torque TOUT of an induction drive within limits.
 
-    def torque_loop(self, controller: Rational) -> TwoInputs:
-        """Td = [Gu K/(1 + Gu K)] Td_command + [Gv/(1 + Gu K)] wd, Eq. (25), with the torque controller K(s)."""
-        closed = self._common * controller.denominator + self.Gu.numerator * controller.numerator
-        command = Rational(self.Gu.numerator * controller.numerator, closed, "Td_command", "Td")
-        return TwoInputs(command, _of_speed(Rational(self.Gv.numerator * controller.denominator, closed)))
+    A = a/(s + a) of the closed current loops instead of Eq. (15), and C = (JM s + CM)/N^2: the control takes the
+    back-EMF out, and with it what damps the shaft.
 
-    def speed_loop(self, controller: Rational) -> TwoInputs:
-        """Td = Gu K wd_command + (Gv - Gu K) wd, Eq. (28), with the speed controller K(s)."""
-        gain = self.Gu.numerator * controller.numerator
-        both = self._common * controller.denominator
-        coupling = self.Gv.numerator * controller.denominator - gain
-        return TwoInputs(Rational(gain, both, "wd_command", "Td"), _of_speed(Rational(coupling, both)))
+    >>> from klingel import library
+    >>> transfer = InductionTransfer.of(library.drive("induction_160kw"))
+    >>> round(abs(transfer.Gu(0j)), 12)
+    1.0
+    """
 
-    def _closed(self, pair: WheelPair) -> Polynomial:
-        return self._common * pair.Gw.denominator - self.Gv.numerator
+    torque_bandwidth: float
+    gear_ratio: float
+    rotor_inertia: float
+    rotor_damping: float
+    transmission_stiffness: float
+    transmission_damping: float
+
+    @classmethod
+    def of(cls, drive: InductionDrive) -> InductionTransfer:
+        """The transfer functions of a drive."""
+        return cls(**{field.name: getattr(drive, field.name) for field in dataclasses.fields(cls)})
+
+    @property
+    def _lag(self) -> Polynomial:
+        return S / self.torque_bandwidth + 1.0
+
+    @property
+    def A(self) -> Rational:
+        """Air-gap torque at the wheel over its command, a/(s + a)."""
+        return Rational(Polynomial([1.0]), self._lag, "torque_command", "torque")
+
+    @property
+    def C(self) -> Rational:
+        """Torque at the wheel over rotor speed (wE), (JM s + CM)/N^2."""
+        rotor = self.rotor_inertia * S + self.rotor_damping
+        return Rational(rotor / self.gear_ratio**2, Polynomial([1.0]), "wE", "torque")

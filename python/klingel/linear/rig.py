@@ -17,10 +17,14 @@ from klingel.control.diagram import Diagram
 from klingel.control.discrete import lead
 from klingel.control.response import controller_response
 from klingel.drives import DriveTransfer, WheelPair, operating_point
+from klingel.errors import InputError
 from klingel.linear.measured import Measured, measured_response
+from klingel.linear.model import LinearModel
 from klingel.linear.operating import steady_spec
-from klingel.lower import GRAVITY, Spec
-from klingel.scenario import Scenario
+from klingel.linear.response import frequency_response
+from klingel.linear.statespace import linearise
+from klingel.lower import GRAVITY, Spec, axles
+from klingel.scenario import CreepLaw, Scenario
 from klingel.track import Track
 from klingel.units import Quantity, to_si
 from klingel.vehicle import Drive, Vehicle
@@ -33,13 +37,19 @@ GUIDED = ("x", "y", "roll", "pitch", "yaw")
 HEAVY = 1e9
 """Moment of inertia of wheels that are held [kg m2]."""
 
+SHEAR_MODULUS, POISSON = 210e9 / 2.56, 0.28
+"""Of the steel of wheels and rails [Pa], [-]."""
+
 STEP = 5e-4
 """Of the integrator and of the inputs [s]."""
 
 EQUATIONS = ("(13)", "(14)", "(25)", "(27)", "(29)")
 
 CROSSOVER = 2.0
-"""Of the torque controller that Eq. (25) is measured with [Hz]: at 5 Hz the torsion mode nearly goes unstable at 265 km/h."""
+"""Of the torque controller that Eq. (25) is measured with [Hz]; at 5 Hz the torsion is nearly unstable at 265 km/h."""
+
+CANCELS = 0.06
+"""Distance of a zero from a pole, over its size, up to which the two count as cancelled."""
 
 AMPLITUDE = 0.02
 """R.m.s. of an excitation over what the motors are given in steady running."""
@@ -56,6 +66,8 @@ def rig_spec(vehicle: Vehicle, speed: Quantity, *, held: bool = False) -> Spec:
     >>> len(spec["bodies"]), len(spec["drives"]), spec["bodies"][0]["guided"]
     (1, 2, ['x', 'y', 'roll', 'pitch', 'yaw'])
     """
+    if vehicle.drive is None:
+        raise InputError.single("drive", None, "is missing", remedy=f"{vehicle.name} is hauled; take a driven vehicle")
     scenario = Scenario(vehicle, Track.straight(1000.0), speed=speed, creep_law="linear", step=STEP)
     whole = steady_spec(scenario)
     first = next(b for b in whole["bodies"] if b["name"].endswith("wheelset1"))
@@ -103,9 +115,17 @@ def longitudinal_creep(vehicle: Vehicle) -> float:
     right = contacts[contacts["side"] == "right"]
     a, b, load_on = (right[key].to_numpy(dtype=np.float64) for key in ("a", "b", "normal_force"))
     nil, slip = np.zeros(len(right)), 1e-6
-    steel = {"shear_modulus": 210e9 / 2.56, "poisson": 0.28}
     force, _, _ = creep_force(
-        "linear", a=a, b=b, xi=nil + slip, eta=nil, phi=nil, normal_force=load_on, friction=0.35, **steel
+        "linear",
+        a=a,
+        b=b,
+        xi=nil + slip,
+        eta=nil,
+        phi=nil,
+        normal_force=load_on,
+        friction=0.35,
+        shear_modulus=SHEAR_MODULUS,
+        poisson=POISSON,
     )
     return float(-force.sum() / slip)
 
@@ -241,3 +261,72 @@ def _measure(
     )
     by = _hold(found.frequencies) if hold else 1.0
     return found.frequencies, [np.asarray(column / by) for column in found.response.T]
+
+
+@dataclass(frozen=True, eq=False)
+class PlantDeparture:
+    """Design plants of a wheel pair beside what the whole vehicle answers, wheelset by wheelset.
+
+    frequencies [Hz]; stated: Eqs (27) and (29); exact: by wheelset, the same two of the vehicle's linear model; zeros:
+    by wheelset, the lightly damped ones of wd/u [Hz, damping ratio].
+    """
+
+    speed: float
+    frequencies: NDArray[np.float64]
+    stated: Mapping[str, Response]
+    exact: Mapping[str, Mapping[str, Response]]
+    zeros: Mapping[str, tuple[tuple[float, float], ...]]
+
+
+def plant_departure(
+    vehicle: Vehicle, speed: Quantity, frequencies: NDArray[np.float64], *, creep_law: CreepLaw = "table"
+) -> PlantDeparture:
+    """Eqs (27) and (29) against the exact linear model of the vehicle on straight track, no controller acting.
+
+    Eq. (26) drops yaw and lateral motion, which carry the wheels along. Where wd is kept at nil the two wheels are a
+    solid wheelset, so the zeros of wd/u are the motions of the vehicle with that pair locked: the kinematic oscillation
+    of Klingel, V/(2 pi) sqrt(gamma/(lambda r0)), hardly damped (docs/theory/drives.md).
+    Errors: InputError for a vehicle without DC motors; SimulationError where it has no steady state.
+    """
+    scenario = Scenario(vehicle, Track.straight(1000.0), speed=speed, creep_law=creep_law)
+    point = operating_point(vehicle, scenario.speed)
+    model = linearise(scenario, controllers=False)
+    transfer = DriveTransfer.of(vehicle.dc_drive, field_current=point.field_current)
+    bridge = vehicle.axle_bridge
+    assert bridge is not None
+    f11 = longitudinal_creep(vehicle)
+    pair = WheelPair(bridge.wheel.inertia.spin, vehicle.geometry.wheel_radius, scenario.speed, f11)
+    omega = 2.0 * math.pi * frequencies
+    stated = {
+        "(27)": transfer.torque_plant(pair).response(omega),
+        "(29)": transfer.speed_plant(pair).response(omega),
+    }
+    exact, zeros = {}, {}
+    for axle in axles(vehicle):
+        left, right = f"{axle.name}.left", f"{axle.name}.right"
+        u = {f"{left}.armature_voltage": 1.0, f"{right}.armature_voltage": -1.0}
+        parts = ("shaft_torque", "spin_speed")
+        found = frequency_response(model, u, [f"{side}.{p}" for p in parts for side in (left, right)], frequencies)
+        exact[axle.name] = {
+            "(27)": 0.5 * (found[:, 0] - found[:, 1]),
+            "(29)": 0.5 * (found[:, 2] - found[:, 3]),
+        }
+        zeros[axle.name] = _zeros(model, u, {f"{left}.spin_speed": 0.5, f"{right}.spin_speed": -0.5})
+    return PlantDeparture(scenario.speed, frequencies, stated, exact, zeros)
+
+
+def _zeros(model: LinearModel, u: Mapping[str, float], y: Mapping[str, float]) -> tuple[tuple[float, float], ...]:
+    """Lightly damped zeros from a sum of inputs to a sum of outputs up to 20 Hz, without those that cancel a pole."""
+    from scipy.linalg import eig
+
+    inputs, outputs = [i.name for i in model.inputs], [o.name for o in model.outputs]
+    b = sum(gain * model.B[:, [inputs.index(name)]] for name, gain in u.items())
+    c = sum(gain * model.C[[outputs.index(name)]] for name, gain in y.items())
+    n = len(model.A)
+    mass = np.zeros((n + 1, n + 1))
+    mass[:n, :n] = np.eye(n)
+    s = eig(np.block([[model.A, b], [c, np.zeros((1, 1))]]), mass, right=False)
+    poles = np.linalg.eigvals(model.A)
+    light = [z for z in s[np.isfinite(s)] if z.imag > 0.0 and 2.0 < abs(z) < 126.0 and abs(z.real) < 0.5 * abs(z)]
+    alone = [z for z in light if np.abs(poles - z).min() > CANCELS * abs(z)]
+    return tuple(sorted((float(abs(z)) / (2.0 * math.pi), float(-z.real / abs(z))) for z in alone))

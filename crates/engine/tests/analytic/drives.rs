@@ -65,7 +65,9 @@ fn excited(mut case: Value, input: &str, value: f64) -> Value {
 fn a_field_that_could_move_but_rests_changes_nothing() {
     let (held, moved) = (run(&rig(Value::Null)), run(&rig(field(300.0))));
     for name in ["axle.left.armature_current", "axle.right.shaft_torque", "axle.left.spin_speed", "axle.left.X"] {
-        assert_eq!(crate::common::channel(&held, name), crate::common::channel(&moved, name), "{name}");
+        let (a, b) = (crate::common::channel(&held, name), crate::common::channel(&moved, name));
+        let apart = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(apart < 1e-9 * a[0].abs(), "{name}: {apart}");
     }
 }
 
@@ -90,10 +92,12 @@ fn only_what_is_free_moves_on_the_rig() {
         let values = crate::common::channel(&series, &format!("axle.{name}"));
         assert!(values.iter().all(|&v| v == kept), "{name}");
     }
-    let spin = |side: &str| crate::common::channel(&series, &format!("axle.{side}.spin_speed"));
-    assert!(spin("left").last() > spin("left").first(), "the excited wheel turns faster");
-    let right = spin("right");
-    assert!(right.iter().all(|w| (w - right[0]).abs() < 1e-9), "the other does not feel it");
+    let change = |side: &str| {
+        let spin = crate::common::channel(&series, &format!("axle.{side}.spin_speed"));
+        spin[spin.len() - 1] - spin[0]
+    };
+    assert!(change("left") > 1e-3, "the excited wheel turns faster: {}", change("left"));
+    assert!(change("right").abs() < 1e-5 * change("left"), "the other does not feel it: {}", change("right"));
 }
 
 #[test]
