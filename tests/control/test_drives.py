@@ -98,6 +98,19 @@ def test_there_is_no_operating_point_backwards_or_without_drives() -> None:
         operating_point(library.vehicle("manchester_coach"), 30.0)
 
 
+def test_below_the_base_speed_the_field_is_rated_and_the_armature_voltage_lower() -> None:
+    rest, slow, base = (operating_point(VEHICLE, speed) for speed in (0.0, 25.0, 30.0))
+    assert (rest.wheel_torque, rest.armature_voltage, rest.armature_current) == (0.0, 0.0, 0.0)
+    assert rest.field_current == slow.field_current == 10.0 > base.field_current
+    back_emf = slow.torque_constant * slow.motor_speed
+    assert slow.armature_voltage == pytest.approx(back_emf + 0.15 * slow.armature_current)
+    assert slow.armature_voltage < base.armature_voltage == 900.0
+    assert slow.armature_current * slow.torque_constant * 3.0 == pytest.approx(
+        slow.wheel_torque + 0.02 * 9.0 * 25 / 0.46
+    )
+    assert rest.wheel_torque_max == pytest.approx(3.0 * 4.646 * 900.0 / 0.15)
+
+
 def motor_rates(state: np.ndarray, voltage: float, wheel_speed: float) -> tuple[np.ndarray, float]:
     """Eqs (2), (4) and (7) to (11), deviations from steady running; the shaft torque beside."""
     current, motor_speed, twist = state

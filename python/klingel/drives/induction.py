@@ -91,7 +91,7 @@ def induction_point(vehicle: Vehicle, speed: float, *, resistance: Resistance | 
     """Steady running of a vehicle with induction motors at `speed` [m/s], each wheel taking an eighth of what resists.
 
     resistance: of the vehicle [N] over its speed [m/s]; None for the formula of the vehicle's file.
-    Errors: InputError for a vehicle with other motors, a torque out of reach, a speed that is not positive.
+    Errors: InputError for a vehicle with other motors, a torque out of reach, a negative speed.
 
     >>> from klingel import library
     >>> vehicle = library.vehicle("mechatronic_irw").replace(drive=library.drive("induction_160kw"))
@@ -125,6 +125,6 @@ def induction_point(vehicle: Vehicle, speed: float, *, resistance: Resistance | 
         current_q=i_q,
         stator_voltage=math.hypot(v_d, v_q),
         stator_frequency=omega / (2.0 * math.pi),
-        slip=slip_speed / omega,
+        slip=slip_speed / omega if omega != 0.0 else 0.0,
         copper_loss=1.5 * drive.stator_resistance * (i_d**2 + i_q**2) + rotor_loss,
     )

@@ -27,8 +27,13 @@ def wheel_torque(drive: Drive, field_current: float, motor_speed: float) -> floa
 
 
 def wheel_torque_max(drive: Drive, motor_speed: float) -> float:
-    """The largest TW of any field current: (x VaMax)^2 / (4 N Ra wM) [N m]; motor_speed: wM [rad/s]."""
+    """The largest TW of any field current up to the rated one [N m]; motor_speed: wM [rad/s].
+
+    (x VaMax)^2 / (4 N Ra wM) where the field that gives it, x VaMax/(2 Ke wM), is within its rating.
+    """
     voltage = drive.traction_share * drive.armature_voltage_max
+    if 2.0 * drive.emf_constant * motor_speed * drive.field_current_rated <= voltage:
+        return wheel_torque(drive, drive.field_current_rated, motor_speed)
     return voltage**2 / (4.0 * drive.gear_ratio * drive.armature_resistance * motor_speed)
 
 

@@ -58,9 +58,10 @@ fn friction_follows_the_place_of_each_wheel() {
 /// A wheel that turns too slowly brakes: its creepage is positive, and what it does on the rail is not more than friction.
 #[test]
 fn less_friction_brakes_less() {
-    let braked = |friction: f64| {
+    let braked = |friction: f64, falling: Value| {
         let mut case = wheelset(json!({ "cone": 0.025 }), 0.025, straight(60.0), 20.0, 1.0);
         case["adhesion"] = json!({ "s": [0.0], "left": [friction], "right": [friction] });
+        case["creep"]["falling"] = falling;
         let mut plant = Plant::new(&case);
         let mut x = plant.equilibrium();
         let spin = plant.state("wheelset.spin.spin_speed");
@@ -68,11 +69,15 @@ fn less_friction_brakes_less() {
         plant.rates(&x);
         let wheel = plant.work.wheels[0];
         assert!((wheel.creep_x - 0.02).abs() < 1e-3, "{}", wheel.creep_x);
+        assert_eq!(wheel.friction, friction, "of a standing contact");
         -wheel.force_T.x() / -wheel.force_T.z()
     };
     for friction in [0.05, 0.3] {
-        let used = braked(friction) / friction;
+        let used = braked(friction, Value::Null) / friction;
         assert!(used > 0.95 && used < 1.0 + 1e-3, "{used}");
+        // at 0.4 m/s of slip (1 - 0.4) exp(-0.6 x 0.4) + 0.4 is left
+        let fallen = braked(friction, json!([0.4, 0.6])) / friction / used;
+        assert!((fallen - 0.872).abs() < 0.01, "{fallen}");
     }
 }
 

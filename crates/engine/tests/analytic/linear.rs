@@ -66,7 +66,7 @@ fn slopes_are_central_differences() {
             let h = 2e-4 * unit;
             let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|k| at_place(column, k * h));
             for row in 0..n + outputs {
-                let difference = (a[row] - 8.0 * b[row] + 8.0 * c[row] - d[row]) / (12.0 * h);
+                let difference = ((a[row] - d[row]) + 8.0 * (c[row] - b[row])) / (12.0 * h);
                 let error = (difference - exact(row, column)).abs() * unit / typical[row];
                 worst = worst.max(error);
                 assert!(error < 1e-6, "{law}: row {row}, column {column}: {difference} {}", exact(row, column));
