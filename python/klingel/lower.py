@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from klingel.contact import profile_of
 from klingel.drives import induction_point, operating_point, running_resistance
 from klingel.scenario import Scenario
-from klingel.track import CANT_BASE, Track
+from klingel.track import CANT_BASE, Adhesion, Track
 from klingel.vehicle import Drive, InductionDrive, Transmission, Vehicle
 
 GRAVITY = 9.81
@@ -22,6 +22,9 @@ wheelset that bounces on its contact springs near 180 Hz; this project's choice.
 
 HOLD_FREQUENCY = 0.1
 """Of the ideal force that holds the speed [Hz]: slow against everything that the study looks at; critically damped."""
+
+IMPLICIT_RATE = 20e3
+"""Speed below which steps are implicit, over the step [m/s2]: explicit ones are stable above 17e3 or so."""
 
 Spec = dict[str, Any]
 Point = list[float]
@@ -81,6 +84,7 @@ def lower(scenario: Scenario) -> Spec:
         "gravity": GRAVITY,
         "speed": scenario.speed,
         "track": _track(scenario.track, scenario.start),
+        "adhesion": _adhesion(scenario.adhesion),
         "bodies": [*_bodies(vehicle), *(_wheelset(vehicle, axle) for axle in wheels)],
         "contact_pairs": [_pair(scenario)],
         "wheels": [_wheel(vehicle, axle, side, scenario.friction) for axle in wheels for side, _ in SIDES],
@@ -88,6 +92,7 @@ def lower(scenario: Scenario) -> Spec:
             "law": scenario.creep_law,
             "elements": list(scenario.creep_elements),
             "contact_dissipation": CONTACT_DISSIPATION,
+            "stick": scenario.stick,
             **scenario.creep_options.spec(scenario.creep_law),
         },
         "bushings": [*_primary(vehicle, wheels), *_secondary(vehicle)],
@@ -96,22 +101,34 @@ def lower(scenario: Scenario) -> Spec:
         "actuators": list(_actuators(vehicle, wheels)),
         "drives": list(_drives(vehicle, wheels, scenario.speed, control)),
         "induction_drives": list(_induction_drives(vehicle, wheels, scenario.speed)),
-        "drag": _drag(vehicle),
+        "drag": _drag(vehicle, scenario.headwind),
         "hold": _hold(vehicle),
         "control": control,
         "run": {
             "duration": scenario.end_time,
             "step": scenario.step,
+            "implicit_below": IMPLICIT_RATE * scenario.step,
             "record_interval": scenario.record_interval,
             "equilibrium": True,
             "kicks": [],
+            "energy": scenario.energy,
         },
     }
 
 
 def _track(track: Track, start: float) -> Spec:
-    segments = [{"length": s.length, "curvature": list(s.curvature), "cant": list(s.cant)} for s in track.segments]
+    segments = [
+        {"length": s.length, "curvature": list(s.curvature), "cant": list(s.cant), "grade": list(s.grade)}
+        for s in track.segments
+    ]
     return {"segments": segments, "start": start, "cant_base": CANT_BASE}
+
+
+def _adhesion(adhesion: Adhesion | None) -> Spec | None:
+    if adhesion is None:
+        return None
+    places, left, right = adhesion.points()
+    return {"s": places.tolist(), "left": left.tolist(), "right": right.tolist()}
 
 
 def _bogies(vehicle: Vehicle) -> tuple[tuple[str, float], ...]:
@@ -349,11 +366,11 @@ def _transmission(drive: Transmission) -> Spec:
     }
 
 
-def _drag(vehicle: Vehicle) -> Spec | None:
+def _drag(vehicle: Vehicle, headwind: float) -> Spec | None:
     if vehicle.running_resistance is None:
         return None
     davis = running_resistance(vehicle)
-    return {"body": "body", "coefficients": [davis.constant, davis.linear, davis.quadratic]}
+    return {"body": "body", "coefficients": [davis.constant, davis.linear, davis.quadratic], "headwind": headwind}
 
 
 def _hold(vehicle: Vehicle) -> Spec:

@@ -7,8 +7,9 @@ import pytest
 
 from klingel import control, library
 from klingel.errors import InputError
+from klingel.lower import lower
 from klingel.scenario import Scenario
-from klingel.track import Track
+from klingel.track import Adhesion, Track
 
 COACH = library.vehicle("manchester_coach")
 
@@ -31,7 +32,7 @@ curvature = "database"
 
 
 def scenario(**changes: Any) -> Scenario:
-    return Scenario(COACH, Track.straight("500 m"), **{"speed": "108 km/h", **changes})
+    return Scenario(**{"vehicle": COACH, "track": Track.straight("500 m"), "speed": "108 km/h", **changes})
 
 
 def read(tmp_path: Path, text: str) -> Scenario:
@@ -199,3 +200,45 @@ def test_bad_files(tmp_path: Path, old: str, new: str, said: str) -> None:
     text = str(refused.value)
     assert said in text
     assert "my.toml" in text or "none.toml" in text
+
+
+def test_adhesion_grade_and_wind_of_a_file(tmp_path: Path) -> None:
+    text = """
+vehicle = "manchester_coach"
+speed = "108 km/h"
+headwind = "36 km/h"
+
+[track.curve]
+radius = "800 m"
+cant = "160 mm"
+transition = "195 m"
+grade = 0.01
+
+[adhesion]
+base = 0.3
+transition = "10 m"
+
+[[adhesion.patch]]
+start = "200 m"
+end = "400 m"
+friction = 0.08
+rail = "left"
+"""
+    made = read(tmp_path, text)
+    assert made == scenario(
+        track=Track.curve(radius="800 m", cant="160 mm", transition="195 m", grade=0.01),
+        headwind=10.0,
+        adhesion=Adhesion(base=0.3, patches=[(200.0, 400.0, 0.08, "left")], transition=10.0),
+    )
+    spec = lower(made)
+    assert spec["adhesion"]["left"] == [0.3, 0.08, 0.08, 0.3]
+    assert spec["drag"]["headwind"] == 10.0
+    assert all(segment["grade"] == [0.01, 0.01] for segment in spec["track"]["segments"])
+    with pytest.raises(InputError, match=r"adhesion\.patch\.0\.frction"):
+        read(tmp_path, text.replace("friction = 0.08", "frction = 0.08"))
+
+
+def test_friction_and_adhesion_must_not_contradict_each_other() -> None:
+    with pytest.raises(InputError, match="contradict"):
+        scenario(friction=0.2, adhesion=Adhesion(base=0.3))
+    assert scenario(friction=0.3, adhesion=Adhesion(base=0.3)).friction == 0.3

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from klingel.errors import InputError
-from klingel.track import Segment, Track, cases
+from klingel.track import Adhesion, Segment, Track, cases
 
 
 def curve(**changes: object) -> Track:
@@ -74,3 +74,43 @@ def test_empty_track_and_places_outside() -> None:
         Track.straight(100).curvature(101.0)
     with pytest.raises(InputError, match="must be positive"):
         Track((Segment(0.0),))
+
+
+def test_a_grade_is_linear_inside_a_segment_and_must_not_jump() -> None:
+    climb = Track((Segment(100.0), Segment(50.0, grade=(0.0, 0.02)), Segment(100.0, grade=(0.02, 0.02))))
+    np.testing.assert_allclose(climb.grade([50.0, 125.0, 200.0]), [0.0, 0.01, 0.02])
+    assert climb.mirrored().segments == climb.segments
+    np.testing.assert_allclose(curve(grade="2 %").grade([0.0, 300.0]), 0.02)
+    assert Track.straight(100.0, grade=0.01).segments[0].grade == (0.01, 0.01)
+    for grade, said in (((0.02, 0.02), "grade jumps"), ((0.0, 0.2), "too steep")):
+        with pytest.raises(InputError, match=said):
+            Track((Segment(100.0), Segment(50.0, grade=grade)))
+
+
+def test_adhesion_is_linear_in_the_transitions_and_held_elsewhere() -> None:
+    adhesion = Adhesion(base=0.3, patches=[(100.0, 300.0, 0.08), ("320 m", "350 m", 0.1, "right")], transition=10.0)
+    np.testing.assert_allclose(
+        adhesion.left([-50.0, 90.0, 95.0, 100.0, 300.0, 305.0, 340.0]), [0.3, 0.3, 0.19, 0.08, 0.08, 0.19, 0.3]
+    )
+    np.testing.assert_allclose(adhesion.right([310.0, 340.0, 900.0]), [0.3, 0.1, 0.3])
+    places, left, right = adhesion.points()
+    assert places.tolist() == [90.0, 100.0, 300.0, 310.0, 320.0, 350.0, 360.0]
+    s = np.linspace(0.0, 500.0, 1001)
+    np.testing.assert_allclose(np.interp(s, places, left), adhesion.left(s), atol=1e-15)
+    np.testing.assert_allclose(np.interp(s, places, right), adhesion.right(s), atol=1e-15)
+    np.testing.assert_array_equal(adhesion.mirrored().left(s), adhesion.right(s))
+
+
+@pytest.mark.parametrize(
+    ("patches", "said"),
+    [
+        ([(0.0, 10.0, 0.0)], "no coefficient of friction"),
+        ([(10.0, 0.0, 0.1)], "before the start"),
+        ([(0.0, 10.0)], "is no patch"),
+        ([(0.0, 10.0, 0.1, "middle")], "not known"),
+        ([(0.0, 10.0, 0.1), (15.0, 20.0, 0.1, "left")], "another patch of the left rail"),
+    ],
+)
+def test_bad_adhesion_is_refused(patches: list[tuple[float, ...]], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        Adhesion(patches=patches)

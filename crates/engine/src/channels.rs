@@ -29,7 +29,7 @@ const BODY: [(&str, &str); 14] = [
     ("yaw_moment", "N m"),
 ];
 
-const WHEEL: [(&str, &str); 12] = [
+const WHEEL: [(&str, &str); 15] = [
     ("Q", "N"),
     ("Y", "N"),
     ("X", "N"),
@@ -42,6 +42,9 @@ const WHEEL: [(&str, &str); 12] = [
     ("root_force", "N"),
     ("flange_force", "N"),
     ("spin_speed", "rad/s"),
+    ("friction", "-"),
+    ("creep_x", "-"),
+    ("creep_y", "-"),
 ];
 
 const ARMATURE: [(&str, &str); 2] = [("armature_current", "A"), ("armature_voltage", "V")];
@@ -165,5 +168,22 @@ fn wheel_row<S: Scalar>(state: &WheelState<S>, spin_speed: S) -> [S; WHEEL.len()
     let [x, y, z] = state.force_T.0;
     let [tread, root, flange] = state.normal;
     let (angle, steep, slender) = (state.contact_angle, state.steep_force, state.slender_force);
-    [-z, -y, x, state.t_gamma, state.spin_work, angle, steep, slender, tread, root, flange, spin_speed]
+    let (friction, creep_x, creep_y) = (state.friction, state.creep_x, state.creep_y);
+    [
+        -z,
+        -y,
+        x,
+        state.t_gamma,
+        state.spin_work,
+        angle,
+        steep,
+        slender,
+        tread,
+        root,
+        flange,
+        spin_speed,
+        friction,
+        creep_x,
+        creep_y,
+    ]
 }

@@ -2,7 +2,12 @@
 
 use crate::error::EngineError;
 use crate::model::{FieldIn, Model};
-use crate::steady::steady;
+use crate::steady::{Steady, steady};
+use crate::wiring::Wiring;
+
+/// Speed and least speed of creepages of a vehicle that is about to stand \[m/s\]: so slow that motors turn without voltage
+/// and controllers see no speed, yet rolling, so that its wheelsets have found their place.
+const CREEPING: [f64; 2] = [1e-4, 1e-6];
 
 /// The states in the design position at the initial speed, wheels rolling.
 pub fn design_state(m: &Model) -> Vec<f64> {
@@ -45,7 +50,40 @@ pub fn design_state(m: &Model) -> Vec<f64> {
 /// # Errors
 /// `EngineError::Equilibrium` when Newton's method does not converge.
 pub fn equilibrium(m: &Model) -> Result<Vec<f64>, EngineError> {
-    Ok(steady(m, None, None)?.x)
+    Ok(start(m, None)?.x)
+}
+
+/// The steady state at `m.speed`, with the controllers settled. Slower than the least speed of the creepages creep alone
+/// carries nothing, so there it is the state in which the vehicle came to stand: that of rolling out, with the velocities
+/// taken off; wheels that stick keep their forces.
+///
+/// # Errors
+/// `EngineError::Equilibrium` when Newton's method does not converge.
+pub fn start(m: &Model, wiring: Option<&Wiring>) -> Result<Steady, EngineError> {
+    if m.speed.abs() >= m.creep_floor {
+        return steady(m, wiring, None);
+    }
+    let [speed, creep_floor] = CREEPING;
+    // running resistance has its full size only at speed, and none at rest
+    let mut rolling = Model { speed, creep_floor, drag: None, ..m.clone() };
+    if m.hold.is_some() {
+        rolling.inputs[m.places.speed] = speed;
+    }
+    let mut found = steady(&rolling, wiring, None)?;
+    scale_speeds(m, &mut found.x, m.speed / speed);
+    if m.hold.is_some() {
+        found.inputs[m.places.speed] = m.inputs[m.places.speed];
+    }
+    Ok(found)
+}
+
+/// Scales every velocity: the same way of running, faster or slower.
+pub(crate) fn scale_speeds(m: &Model, x: &mut [f64], ratio: f64) {
+    for body in &m.bodies {
+        x[body.velocities()].iter_mut().for_each(|v| *v *= ratio);
+    }
+    m.rotors.iter().for_each(|r| x[r.state] *= ratio);
+    m.drives.iter().for_each(|d| x[d.state] *= ratio);
 }
 
 /// Lets the whole vehicle sink until the wheels carry its weight on average: within reach of Newton.

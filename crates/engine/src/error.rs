@@ -4,7 +4,7 @@ use crate::control::ControlError;
 use klingel_physics::contact::creep::CreepError;
 use klingel_physics::contact::{ContactError, OutsideTable};
 use klingel_physics::elements::StopError;
-use klingel_physics::track::AlignmentError;
+use klingel_physics::track::{AdhesionError, AlignmentError};
 use thiserror::Error;
 
 /// A spec that cannot become a model, or a model that has no start.
@@ -18,6 +18,8 @@ pub enum EngineError {
     Unknown { place: String, what: &'static str, name: String, known: String },
     #[error(transparent)]
     Track(#[from] AlignmentError),
+    #[error(transparent)]
+    Adhesion(#[from] AdhesionError),
     #[error("stop `{name}`: {source}")]
     Stop { name: String, source: StopError },
     #[error("wheel-rail pair {index}: {source}")]

@@ -4,6 +4,7 @@
 pub mod channels;
 pub mod compile;
 pub mod control;
+pub mod energy;
 pub mod equilibrium;
 pub mod error;
 pub mod excitation;
@@ -19,6 +20,8 @@ pub mod rates;
 pub mod simulate;
 pub mod spec;
 pub mod steady;
+pub mod stepper;
+pub mod stiff;
 pub mod suspension;
 pub mod tables;
 pub mod traction;

@@ -7,10 +7,12 @@ use klingel_physics::Scalar;
 use klingel_physics::contact::creep::FallingFriction;
 use klingel_physics::contact::{ContactTable, CreepForce};
 use klingel_physics::drives::{
-    Actuator, DcField, DcMotor, FieldOriented, FieldOrientedState, InductionMotor, InductionState, Transmission,
+    Actuator, DcField, DcMotor, FieldOriented, FieldOrientedState, InductionMotor, InductionState, RunningResistance,
+    Transmission,
 };
 use klingel_physics::elements::{Bushing, Maxwell, Stop};
-use klingel_physics::track::{Alignment, TrackFrame, UniformTrack};
+use klingel_physics::track::{Adhesion, Alignment, TrackFrame, UniformTrack};
+use std::ops::Range;
 use std::sync::Arc;
 
 #[derive(Clone, Debug)]
@@ -36,11 +38,15 @@ pub struct Model {
     pub drives: Vec<Drive>,
     pub dc_motors: Vec<DcMotorIn>,
     pub induction_motors: Vec<InductionMotorIn>,
-    pub drag: Option<(usize, [f64; 3])>,
+    pub drag: Option<(usize, RunningResistance)>,
     pub hold: Option<Hold>,
+    /// Friction along the track, in place of that of the wheels.
+    pub adhesion: Option<Adhesion>,
     pub creep: CreepForce,
     /// How friction falls with the slip velocity, if it does.
     pub falling_friction: Option<FallingFriction>,
+    /// Speed v0 that keeps creepages finite at standstill \[m/s\].
+    pub creep_floor: f64,
     /// Contact damping over elastic force and approach speed \[s/m\].
     pub contact_dissipation: f64,
     /// Decay rate of each state that the integrator takes exactly \[1/s\]; zero for most.
@@ -157,6 +163,8 @@ pub struct Wheel {
     pub radius: f64,
     /// Point on the axle line in the tape-circle plane, from the centre of mass, body frame \[m\].
     pub centre: [f64; 3],
+    /// First of its transient creepages, along and across, where wheels stick.
+    pub stick: Option<usize>,
 }
 
 /// A motor's rotor, gearbox and shaft on one wheel; the motor itself is in `dc_motors` or `induction_motors`.
@@ -216,6 +224,13 @@ pub struct Hold {
     /// Of the held speed \[m/s2\].
     pub acceleration: f64,
     pub state: usize,
+}
+
+impl Body {
+    /// Places of its velocities: vx, vy, vz in T and wx, (wy,) wz in B.
+    pub fn velocities(&self) -> Range<usize> {
+        if self.pitches { self.state + 6..self.state + 12 } else { self.state + 5..self.state + 10 }
+    }
 }
 
 impl InductionMotorIn {
@@ -292,6 +307,11 @@ impl Body {
 impl Model {
     pub fn state_count(&self) -> usize {
         self.state_names.len()
+    }
+
+    /// Speed of the reference body \[m/s\].
+    pub fn reference_speed(&self, x: &[f64]) -> f64 {
+        x[self.bodies[self.reference()].velocities().start]
     }
 
     /// The body whose arc length and speed count for the vehicle's: that of the speed hold, else the first.

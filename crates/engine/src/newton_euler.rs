@@ -24,7 +24,7 @@ pub fn newton_euler<S: Scalar>(m: &Model, w: &mut Workspace<S>, x: &[S], dx: &mu
     for (i, body) in m.bodies.iter().enumerate() {
         let motion = &w.motions[i];
         let loads = &w.loads[i];
-        let gravity_T = motion.R_WT.back(Vec3::new(S::zero(), S::zero(), S::constant(m.gravity * body.mass)));
+        let gravity_T = gravity(m.gravity * body.mass, motion);
         let contact_T = loads.force_T + motion.R_WT.back(loads.force_W);
         let force_T = contact_T + gravity_T;
         let acceleration = force_T * S::constant(1.0 / body.mass) - motion.w_track_T.cross(motion.v_T);
@@ -56,6 +56,12 @@ pub fn newton_euler<S: Scalar>(m: &Model, w: &mut Workspace<S>, x: &[S], dx: &mu
         let pitch_acceleration = dx[body.state + 10];
         dx[drive.state] += pitch_acceleration * drive.gear_sense;
     }
+}
+
+/// Weight \[N\] in T: along the track on a grade, else at right angles to the plane of its centre line.
+pub(crate) fn gravity<S: Scalar>(weight: f64, motion: &Motion<S>) -> Vec3<S> {
+    let (along, across) = motion.track.gravity();
+    motion.R_WT.back(Vec3::new(S::zero(), S::zero(), across * weight)) + Vec3::new(along * weight, S::zero(), S::zero())
 }
 
 /// Accelerations about the body axes; the y equation gives up what the rotors take (their reaction on the body).

@@ -43,6 +43,8 @@ pub struct Workspace<S> {
     /// Force on each body without gravity, in T \[N\]: what an accelerometer feels.
     pub felt_T: Vec<Vec3<S>>,
     pub hold_force: S,
+    /// Creep forces get the slopes that linearly implicit steps want, `CreepForce::force_with_secants`.
+    pub secants: bool,
 }
 
 impl<S: Scalar> Workspace<S> {
@@ -62,6 +64,7 @@ impl<S: Scalar> Workspace<S> {
             motor_reaction: vec![S::zero(); bodies],
             felt_T: vec![Vec3::zero(); bodies],
             hold_force: S::zero(),
+            secants: false,
         }
     }
 
@@ -83,7 +86,7 @@ pub fn rates<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>, 
         let frame = |s: S| m.track.at(s, reference, [inputs[track], inputs[track + 1]]);
         *state = motion(frame, body, x, dx);
     }
-    wheels(m, x, inputs, w)?;
+    wheels(m, x, inputs, w, dx)?;
     suspension::joints(m, w);
     suspension::elements(m, x, inputs, w, dx);
     suspension::apply(m, w);

@@ -4,15 +4,16 @@
 use crate::channels;
 use crate::compile::compile;
 use crate::control::Controller;
-use crate::equilibrium::{design_state, equilibrium};
+use crate::energy::Energy;
+use crate::equilibrium::{design_state, equilibrium, start};
 use crate::error::{EngineError, Fault};
 use crate::excitation::Excitation;
-use crate::integrate::Etdrk4;
 use crate::model::Model;
 use crate::pass::Pass;
 use crate::rates::{Workspace, rates};
 use crate::spec::Spec;
-use crate::steady::{Steady, steady};
+use crate::steady::Steady;
+use crate::stepper::Stepper;
 use crate::wiring::Wiring;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -74,7 +75,7 @@ pub fn simulate(spec: &Spec, progress: &Progress) -> Result<TimeSeries, EngineEr
 fn begin(m: &Model, wired: Option<&mut Wired>) -> Result<(Vec<f64>, Vec<f64>), EngineError> {
     if m.run.settled {
         let wiring = wired.as_ref().map(|w| Wiring::of(m, w.controller.diagram().clone())).transpose()?;
-        let Steady { x, inputs, integrals, .. } = steady(m, wiring.as_ref(), None)?;
+        let Steady { x, inputs, integrals, .. } = start(m, wiring.as_ref())?;
         if let Some(wired) = wired {
             // settled before anything excites the vehicle, so that the first sample is a step like every other
             let mut pass = Pass::<f64>::new(m, None);
@@ -108,11 +109,15 @@ struct Wired {
 /// No equilibrium, a controller wired to unknown channels, or a cancelled run.
 pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Result<TimeSeries, EngineError> {
     let start = cpu_time::ThreadTime::now();
-    let channels = channels::list(m);
+    let mut channels = channels::list(m);
     let mut wired = controller.map(|c| Wired::new(m, c)).transpose()?;
     let (mut x, mut held) = begin(m, wired.as_mut())?;
     let probes = wired.as_ref().map_or(0, |w| w.controller.probe_channels().len());
-    let width = channels.len() + probes;
+    let mut energy = m.run.energy.then(|| Energy::new(m));
+    let (own, states) = (channels.len(), x.len());
+    channels.extend(energy.iter().flat_map(Energy::list));
+    let booked = channels.len();
+    let width = booked + probes;
 
     let step = m.run.step;
     let steps = (m.run.duration / step).round() as usize;
@@ -134,10 +139,16 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
     let moves = excitation.moves();
     let mut inputs = held.clone();
     let mut w = Workspace::<f64>::new(m);
-    let mut first = vec![0.0; x.len()];
     let mut row = vec![0.0; width];
-    let mut scheme = Etdrk4::new(step, &m.poles);
     kick(m, &mut x)?;
+    // the accounts are states behind those of the model
+    let mut poles = m.poles.clone();
+    if energy.is_some() {
+        x.resize(states + Energy::STATES, 0.0);
+        poles.resize(x.len(), 0.0);
+    }
+    let mut first = vec![0.0; x.len()];
+    let mut stepper = Stepper::new(m, &poles)?;
     for k in 0..=steps {
         let time = k as f64 * step;
         let sampled = wired.as_ref().is_some_and(|c| k % c.every == 0);
@@ -145,9 +156,15 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
             c.drive(&mut held);
         }
         excitation.apply(k, 0.0, &held, &mut inputs);
-        let evaluated = rates(m, &x, &inputs, &mut w, &mut first).and_then(|()| {
+        let evaluated = rates_and_powers(m, energy.as_ref(), &x, &inputs, &mut w, &mut first).and_then(|()| {
+            if let (Some(energy), 0) = (&mut energy, k) {
+                energy.begin(m, &x, &w);
+            }
             if k % record_every == 0 || sampled {
                 channels::fill(m, &x, &inputs, &w, &mut row);
+            }
+            if let (Some(energy), true) = (&energy, k % record_every == 0) {
+                energy.fill(m, &x, &w, &x[states..], &mut row[own..booked]);
             }
             match &mut wired {
                 Some(c) if sampled => c.sample(&mut row, k == 0 && !c.settled),
@@ -166,15 +183,18 @@ pub fn run(m: &Model, controller: Option<Controller>, progress: &Progress) -> Re
             if k == steps {
                 return Ok(());
             }
-            scheme.advance(&mut x, &first, |later, at, f| {
+            if sampled || wired.is_none() {
+                stepper.choose(m, &x);
+            }
+            stepper.advance(m, &mut x, &first, &mut inputs, |later, at, inputs, f| {
                 if moves {
-                    excitation.apply(k, later / step, &held, &mut inputs);
+                    excitation.apply(k, later / step, &held, inputs);
                 }
-                rates(m, at, &inputs, &mut w, f)
+                rates_and_powers(m, energy.as_ref(), at, inputs, &mut w, f)
             })?;
             finite(m, &x)
         });
-        series.evaluations += 4;
+        series.evaluations += stepper.evaluations();
         if let Err(fault) = advanced {
             series.fault = Some((time, fault));
             break;
@@ -218,6 +238,23 @@ impl Wired {
     }
 }
 
+/// Rates of the model's states, and of the accounts behind them.
+fn rates_and_powers(
+    m: &Model,
+    energy: Option<&Energy>,
+    x: &[f64],
+    inputs: &[f64],
+    w: &mut Workspace<f64>,
+    dx: &mut [f64],
+) -> Result<(), Fault> {
+    let (dx, powers) = dx.split_at_mut(m.state_count());
+    rates(m, x, inputs, w, dx)?;
+    if let Some(energy) = energy {
+        energy.powers(m, x, inputs, w, dx, powers);
+    }
+    Ok(())
+}
+
 fn kick(m: &Model, x: &mut [f64]) -> Result<(), EngineError> {
     for kick in &m.run.kicks {
         let body = m.bodies.iter().find(|b| b.name == kick.body).ok_or_else(|| EngineError::Unknown {
@@ -242,7 +279,7 @@ fn kick(m: &Model, x: &mut [f64]) -> Result<(), EngineError> {
 }
 
 fn finite(m: &Model, x: &[f64]) -> Result<(), Fault> {
-    match x.iter().position(|v| !v.is_finite()) {
+    match x[..m.state_count()].iter().position(|v| !v.is_finite()) {
         Some(i) => Err(Fault::Unstable { state: m.state_names[i].clone() }),
         None => Ok(()),
     }

@@ -17,6 +17,9 @@ pub struct Spec {
     pub speed: f64,
     pub track: TrackSpec,
     pub bodies: Vec<BodySpec>,
+    /// Friction of both rails along the track, in place of that of the wheels.
+    #[serde(default)]
+    pub adhesion: Option<AdhesionSpec>,
     #[serde(default)]
     pub contact_pairs: Vec<PairSpec>,
     #[serde(default)]
@@ -78,6 +81,20 @@ pub struct SegmentSpec {
     pub curvature: [f64; 2],
     /// At the start and end \[m\], positive where the left rail is higher (right-hand curve).
     pub cant: [f64; 2],
+    /// At the start and end \[-\], positive uphill: it tilts gravity, its vertical curvature is left out.
+    #[serde(default)]
+    pub grade: [f64; 2],
+}
+
+/// Friction of the rails over arc length: linear between the places, the first and last value held beyond.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AdhesionSpec {
+    /// Rising \[m\].
+    pub s: Vec<f64>,
+    /// One value a place.
+    pub left: Vec<f64>,
+    pub right: Vec<f64>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -206,6 +223,9 @@ pub struct CreepSpec {
     /// Every law: A and B \[s/m\] of the friction that falls with the slip velocity, mu ((1 - A) exp(-B w) + A).
     #[serde(default)]
     pub falling: Option<[f64; 2]>,
+    /// Creepages need way to build up, so that wheels stick while they stand; two more states a wheel.
+    #[serde(default)]
+    pub stick: bool,
 }
 
 impl Default for CreepSpec {
@@ -218,6 +238,7 @@ impl Default for CreepSpec {
             slope: None,
             reduction: None,
             falling: None,
+            stick: false,
         }
     }
 }
@@ -452,6 +473,9 @@ pub struct TransmissionSpec {
 pub struct DragSpec {
     pub body: String,
     pub coefficients: [f64; 3],
+    /// Of the air along the track, positive against the vehicle: C v^2 becomes C (v + headwind)^2 \[m/s\].
+    #[serde(default)]
+    pub headwind: f64,
 }
 
 /// A slow ideal force along the track on the centre of mass of a body that holds `speed`.
@@ -475,6 +499,10 @@ pub struct RunSpec {
     pub duration: f64,
     /// Integration step; the controllers' sample time is a multiple of it \[s\].
     pub step: f64,
+    /// Below this speed steps are linearly implicit, as creep damping is too stiff for explicit ones; with stick they are
+    /// at every speed \[m/s\].
+    #[serde(default)]
+    pub implicit_below: f64,
     /// Of the recorded channels, a multiple of the step \[s\].
     pub record_interval: f64,
     /// Start from the static equilibrium at `speed` (else from the design position).
@@ -485,6 +513,9 @@ pub struct RunSpec {
     /// Extra velocity of a body at the start: lateral \[m/s\] and yaw rate \[rad/s\], for stability runs and tests.
     #[serde(default)]
     pub kicks: Vec<KickSpec>,
+    /// Whether the energies are booked and become channels.
+    #[serde(default)]
+    pub energy: bool,
     /// What is added to inputs of the model in the course of the run.
     #[serde(default)]
     pub excitations: Vec<ExcitationSpec>,

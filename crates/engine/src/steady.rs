@@ -1,7 +1,7 @@
 //! Steady states: every body at rest relative to the others while the vehicle rolls on, controllers settled.
 //! Newton's method on the rates of the model itself with the exact Jacobian; the curve is entered step by step.
 
-use crate::equilibrium::{design_state, settle_on_rails};
+use crate::equilibrium::{design_state, scale_speeds, settle_on_rails};
 use crate::error::{EngineError, Fault};
 use crate::model::{Course, Model};
 use crate::pass::{DIRECTIONS, Pass};
@@ -96,7 +96,7 @@ pub fn steady(m: &Model, wiring: Option<&Wiring>, start: Option<&Steady>) -> Res
 impl<'a> Problem<'a> {
     fn new(m: &'a Model, wiring: Option<&'a Wiring>) -> Self {
         let reference = &m.bodies[m.reference()];
-        let (s_ref, v_ref) = (reference.state, reference.state + if reference.pitches { 6 } else { 5 });
+        let (s_ref, v_ref) = (reference.state, reference.velocities().start);
         // the place along the track is free; without a speed hold the speed of the reference body is given instead
         let kept: Vec<usize> = m.bodies.iter().flat_map(|b| b.kept().flatten()).collect();
         let given = |i: &usize| *i == s_ref || (m.hold.is_none() && *i == v_ref) || kept.contains(i);
@@ -132,14 +132,8 @@ impl<'a> Problem<'a> {
         let m = self.m;
         let mut state = Steady { inputs: m.inputs.clone(), iterations: 0, ..start.clone() };
         self.driven().iter().for_each(|&i| state.inputs[i] = start.inputs[i]);
-        let reference = &m.bodies[m.reference()];
-        let ratio = m.speed / start.x[reference.state + if reference.pitches { 6 } else { 5 }];
-        for body in &m.bodies {
-            let (first, last) = if body.pitches { (6, 12) } else { (5, 10) };
-            state.x[body.state + first..body.state + last].iter_mut().for_each(|v| *v *= ratio);
-        }
-        m.rotors.iter().for_each(|r| state.x[r.state] *= ratio);
-        m.drives.iter().for_each(|d| state.x[d.state] *= ratio);
+        let ratio = m.speed / m.reference_speed(&start.x);
+        scale_speeds(m, &mut state.x, ratio);
         state
     }
 

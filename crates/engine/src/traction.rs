@@ -65,10 +65,8 @@ pub fn transmissions<S: Scalar>(m: &Model, x: &[S], w: &mut Workspace<S>, dx: &m
 
 /// Running resistance against the motion and the ideal force that holds the speed, both at a centre of mass along T.x.
 pub fn along_track<S: Scalar>(m: &Model, x: &[S], inputs: &[S], w: &mut Workspace<S>, dx: &mut [S]) {
-    if let Some((body, [a, b, c])) = m.drag {
-        let v = w.motions[body].v_T.x();
-        let resistance = (v.abs() * c + b) * v + v / (v.square() + 1e-4).sqrt() * a;
-        w.loads[body].force_T.0[0] -= resistance;
+    if let Some((body, law)) = &m.drag {
+        w.loads[*body].force_T.0[0] -= law.force(w.motions[*body].v_T.x());
     }
     if let Some(hold) = &m.hold {
         let error = inputs[m.places.speed] - w.motions[hold.body].v_T.x();

@@ -8,11 +8,20 @@ from klingel.drives.characteristic import (
     operating_characteristic,
     torque_limit,
 )
-from klingel.drives.demand import Demand, Resistance, torque_demand
+from klingel.drives.demand import Demand, torque_demand
+from klingel.drives.formulas import (
+    DavisCoefficients,
+    Resistance,
+    curve_resistance,
+    polynomial,
+    sauthoff,
+    sncf_general,
+    strahl,
+)
 from klingel.drives.induction import InductionPoint, induction_point, induction_torque_max
 from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
 from klingel.drives.operating import OperatingPoint, operating_point, operating_table
-from klingel.drives.resistance import DavisCoefficients, running_resistance, sncf_general
+from klingel.drives.resistance import running_resistance
 from klingel.drives.transfer import DriveTransfer, InductionTransfer, Rational, TwoInputs, WheelPair
 
 __all__ = [
@@ -28,6 +37,7 @@ __all__ = [
     "TwoInputs",
     "WheelPair",
     "base_speed",
+    "curve_resistance",
     "excitation",
     "field_current",
     "induction_point",
@@ -35,8 +45,11 @@ __all__ = [
     "operating_characteristic",
     "operating_point",
     "operating_table",
+    "polynomial",
     "running_resistance",
+    "sauthoff",
     "sncf_general",
+    "strahl",
     "torque_constant",
     "torque_demand",
     "torque_limit",

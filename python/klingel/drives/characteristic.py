@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from klingel.drives.demand import Resistance, torque_demand
+from klingel.drives.demand import torque_demand
+from klingel.drives.formulas import Resistance
 from klingel.drives.motor import field_current, wheel_torque_max
 
 if TYPE_CHECKING:

@@ -3,10 +3,10 @@ Straight level track; the resistance is any callable of the speed, such as a for
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from klingel.drives.formulas import Resistance
 from klingel.drives.resistance import running_resistance
 from klingel.errors import InputError
 
@@ -14,9 +14,6 @@ if TYPE_CHECKING:
     from klingel.vehicle import Transmission, Vehicle
 
 WHEELS = 8
-
-Resistance = Callable[[float], float]
-"""Of one vehicle [N] over its speed [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +30,8 @@ class Demand:
 def torque_demand(vehicle: Vehicle, drive: Transmission, speed: float, resistance: Resistance | None = None) -> Demand:
     """What each wheel of a vehicle with `drive` needs at `speed` [m/s].
 
-    resistance: of the vehicle [N]; None for the formula of its file. Error: InputError for a negative speed.
+    resistance: of the vehicle [N]; None for the formula of its file. Nothing at rest.
+    Error: InputError for a negative speed.
 
     >>> from klingel import library
     >>> vehicle = library.vehicle("mechatronic_irw")

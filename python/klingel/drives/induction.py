@@ -7,7 +7,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from klingel.drives.demand import Resistance, torque_demand
+from klingel.drives.demand import torque_demand
+from klingel.drives.formulas import Resistance
 from klingel.errors import InputError
 
 if TYPE_CHECKING:

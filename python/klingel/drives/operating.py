@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from klingel.drives.characteristic import excitation
-from klingel.drives.demand import Resistance, torque_demand
+from klingel.drives.demand import torque_demand
+from klingel.drives.formulas import Resistance
 from klingel.drives.motor import torque_constant, wheel_torque_max
 
 if TYPE_CHECKING:

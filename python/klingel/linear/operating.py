@@ -33,7 +33,8 @@ def endless(scenario: Scenario, at: Quantity | None) -> tuple[float, float]:
 
 def steady_spec(scenario: Scenario, *, at: Quantity | None = None) -> Spec:
     """The core's spec of a scenario on endless track, as it is at the arc length `at` of its own track;
-    a run of it starts in the steady state, controllers settled.
+    a run of it starts in the steady state, controllers settled. The track is level, its friction that at `at`, or the
+    base of the scenario's adhesion.
 
     >>> from klingel import Scenario, Track, library
     >>> curve = Track.curve(radius="800 m", cant="160 mm")
@@ -46,6 +47,10 @@ def steady_spec(scenario: Scenario, *, at: Quantity | None = None) -> Spec:
     spec = lower(scenario.replace(track=track, duration=None))
     uniform = {"curvature": curvature, "cant": cant}
     spec["track"] = {"uniform": uniform, "start": spec["track"]["start"], "cant_base": CANT_BASE}
+    if (adhesion := scenario.adhesion) is not None:
+        s = None if at is None else to_si(at, "m", key="at")
+        left, right = (adhesion.base,) * 2 if s is None else (float(adhesion.left(s)), float(adhesion.right(s)))
+        spec["adhesion"] = {"s": [0.0], "left": [left], "right": [right]}
     spec["run"]["settled"] = True
     return spec
 

@@ -14,9 +14,9 @@ from klingel.contact import STANDARD, CreepOptions, Profile, profile_of
 from klingel.contact.checks import Kind
 from klingel.errors import InputError, Problem, nearest
 from klingel.records import Record, read_toml, validated
-from klingel.scenario.scenario import Scenario, Strategy
-from klingel.track import Hand, Segment, Track
-from klingel.units import Curvature, Length, PositiveLength, to_si
+from klingel.scenario.scenario import FRICTION, Scenario, Strategy
+from klingel.track import Adhesion, Hand, Patch, Rail, Segment, Track
+from klingel.units import Curvature, Length, Number, PositiveLength, PositiveNumber, to_si
 from klingel.vehicle import Vehicle
 
 STRATEGIES: dict[str, type[Any]] = {
@@ -43,12 +43,14 @@ class _Curve(Record):
     straight_before: Length = 150.0
     straight_after: Length = 150.0
     hand: Hand = "right"
+    grade: Number = 0.0
 
 
 class _Segment(Record):
     length: PositiveLength
     curvature: tuple[Curvature, Curvature] = (0.0, 0.0)
     cant: tuple[Length, Length] = (0.0, 0.0)
+    grade: tuple[Number, Number] = (0.0, 0.0)
 
 
 class _Track(Record):
@@ -59,13 +61,30 @@ class _Track(Record):
     segment: tuple[_Segment, ...] | None = None
 
 
+class _Patch(Record):
+    """Keywords of klingel.track.Patch."""
+
+    start: Length
+    end: Length
+    friction: PositiveNumber
+    rail: Rail = "both"
+
+
+class _Adhesion(Record):
+    """Keywords of klingel.track.Adhesion."""
+
+    base: PositiveNumber = FRICTION
+    transition: PositiveLength = 5.0
+    patch: tuple[_Patch, ...] = ()
+
+
 def read(path: str | Path) -> Scenario:
     """The scenario of a file; errors: InputError.
 
     Keys: `vehicle` (a name of the library, or the path of a vehicle file relative to this one), `speed`, one of the
     tables `[track.curve]`, `[[track.segment]]` and the key `track.straight`, `[control]` with `strategy` and its
-    parameters, `rail` and `wheel` (names of standard profiles or paths of measured ones), `[creep_options]`, and every
-    other keyword of Scenario.
+    parameters, `rail` and `wheel` (names of standard profiles or paths of measured ones), `[creep_options]`,
+    `[adhesion]` with `[[adhesion.patch]]`, and every other keyword of Scenario.
     """
     path = Path(path)
     tables = read_toml(path)
@@ -80,6 +99,8 @@ def read(path: str | Path) -> Scenario:
             made["control"] = strategy(tables["control"])
         if "creep_options" in tables:
             made["creep_options"] = _creep_options(tables["creep_options"])
+        if "adhesion" in tables:
+            made["adhesion"] = _adhesion(tables["adhesion"])
         kinds: tuple[Kind, ...] = ("wheel", "rail")
         made |= {kind: _profile(tables[kind], kind, path.parent) for kind in kinds if kind in tables}
         return Scenario(**{**tables, **made})
@@ -102,6 +123,17 @@ def _creep_options(table: object) -> CreepOptions:
         return CreepOptions(**table)
     except InputError as error:
         raise error.within("creep_options") from None
+
+
+def _adhesion(table: object) -> Adhesion:
+    if not isinstance(table, Mapping):
+        raise InputError.single("adhesion", table, "is no table", remedy="give [adhesion] with [[adhesion.patch]]")
+    try:
+        given = validated(_Adhesion, table)
+        patches = [Patch(**patch.model_dump()) for patch in given.patch]
+        return Adhesion(base=given.base, patches=patches, transition=given.transition)
+    except InputError as error:
+        raise error.within("adhesion") from None
 
 
 def _profile(name: object, kind: Kind, folder: Path) -> Profile | str:
@@ -184,4 +216,4 @@ def _course(track: _Track) -> Track:
     if track.curve is not None:
         return Track.curve(**track.curve.model_dump())
     assert track.segment is not None
-    return Track(tuple(Segment(s.length, s.curvature, s.cant) for s in track.segment))
+    return Track(tuple(Segment(s.length, s.curvature, s.cant, s.grade) for s in track.segment))

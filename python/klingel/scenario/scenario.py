@@ -13,12 +13,15 @@ from typing import Any, Literal, Protocol, get_args
 from klingel.contact import DRY_AND_CLEAN, STANDARD, CreepOptions, Profile
 from klingel.contact.checks import Kind, kind_problems
 from klingel.errors import InputError, Problem, nearest
-from klingel.track import Track
+from klingel.track import Adhesion, Track
 from klingel.units import Quantity, to_si
 from klingel.vehicle import Vehicle
 
 CreepLaw = Literal["table", "fastsim", "polach", "shen_hedrick_elkins", "linear"]
 Contact = Literal["hertz", "kik_piotrowski"]
+
+FRICTION = 0.35
+"""Of dry rails [-], as the study has it."""
 
 ELEMENTS_MIN, ELEMENTS_MAX = 2, 40
 """Coarsest and finest FASTSIM grid: elements along, and across, the ellipse."""
@@ -40,12 +43,15 @@ class Scenario:
     """One run: vehicle and track, then keywords; strings carry units, plain numbers are SI.
 
     vehicle: of the library or of a file; track: where it runs; speed: at the start, held by a slow ideal force;
-    control: strategy of `klingel.control`, None for none; friction: coefficient of all contacts; contact: normal
-    contact by `hertz` (an ellipse in every zone of the wheel) or `kik_piotrowski` (not Hertzian), equally fast;
-    creep_law with creep_elements (along, across) for FASTSIM and its creep_options; wheel: profile of all wheels, None
-    for the vehicle's; rail: its profile or the name of a standard one; rail_inclination (slope, positive leans
-    inwards), gauge;
-    step: of the integrator; record_interval: of the results; duration: None runs to the end of the track.
+    control: strategy of `klingel.control`, None for none; friction: coefficient of all contacts; adhesion: friction
+    along the track in its place; headwind: speed of the air against the vehicle, for the running resistance;
+    contact: normal contact by `hertz` (an ellipse in every zone of the wheel) or `kik_piotrowski` (not Hertzian),
+    equally fast; creep_law with creep_elements (along, across) for FASTSIM and its creep_options; wheel: profile of all
+    wheels, None for the vehicle's; rail: its profile or the name of a standard one; rail_inclination (slope, positive
+    leans inwards), gauge;
+    stick: creepages need way to build up, so that standing wheels stick instead of creeping;
+    step: of the integrator; record_interval: of the results; duration: None runs to the end of the track, a vehicle
+    that starts from rest needs one; energy: book it (channels `energy.*`, see `klingel.assess.energy`).
     Errors: InputError with every problem.
 
     >>> from klingel import library
@@ -59,10 +65,13 @@ class Scenario:
     speed: float
     control: Strategy | None
     friction: float
+    adhesion: Adhesion | None
+    headwind: float
     contact: Contact
     creep_law: CreepLaw
     creep_elements: tuple[int, int]
     creep_options: CreepOptions
+    stick: bool
     wheel: Profile | None
     rail: str | Profile
     rail_inclination: float
@@ -70,6 +79,7 @@ class Scenario:
     step: float
     record_interval: float
     duration: float | None
+    energy: bool
 
     def __init__(
         self,
@@ -78,11 +88,14 @@ class Scenario:
         *,
         speed: Quantity,
         control: Strategy | None = None,
-        friction: Quantity = 0.35,
+        friction: Quantity = FRICTION,
+        adhesion: Adhesion | None = None,
+        headwind: Quantity = 0.0,
         contact: Contact = "hertz",
         creep_law: CreepLaw = "table",
         creep_elements: tuple[int, int] = (10, 10),
         creep_options: CreepOptions = DRY_AND_CLEAN,
+        stick: bool = False,
         wheel: Profile | None = None,
         rail: str | Profile = "60E1",
         rail_inclination: Quantity = 0.025,
@@ -90,6 +103,7 @@ class Scenario:
         step: Quantity = "0.5 ms",
         record_interval: Quantity = "1 ms",
         duration: Quantity | None = None,
+        energy: bool = True,
     ) -> None:
         values: dict[str, Any] = {
             "vehicle": vehicle,
@@ -97,10 +111,13 @@ class Scenario:
             "speed": to_si(speed, "m/s", key="speed"),
             "control": control,
             "friction": to_si(friction, "1", key="friction"),
+            "adhesion": adhesion,
+            "headwind": to_si(headwind, "m/s", key="headwind"),
             "contact": contact,
             "creep_law": creep_law,
             "creep_elements": _as_tuple(creep_elements),
             "creep_options": creep_options,
+            "stick": stick,
             "wheel": wheel,
             "rail": rail,
             "rail_inclination": to_si(rail_inclination, "1", key="rail_inclination"),
@@ -108,6 +125,7 @@ class Scenario:
             "step": to_si(step, "s", key="step"),
             "record_interval": to_si(record_interval, "s", key="record_interval"),
             "duration": None if duration is None else to_si(duration, "s", key="duration"),
+            "energy": energy,
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -153,13 +171,18 @@ def _is_grid(elements: object) -> bool:
 
 
 def _problems(scenario: Scenario) -> Iterator[Problem]:
-    positive = {"speed": "m/s", "friction": "1", "gauge": "m", "step": "s", "record_interval": "s", "duration": "s"}
+    positive = {"friction": "1", "gauge": "m", "step": "s", "record_interval": "s", "duration": "s"}
     for key, unit in positive.items():
         value = getattr(scenario, key)
         if value is not None and not value > 0.0:
             yield Problem(key, value, f"must be positive [{unit}]", "give a value above zero")
+    if not scenario.speed >= 0.0:
+        yield Problem("speed", scenario.speed, "must not be negative [m/s]", "give a speed, or 0 to start from rest")
+    if not isinstance(scenario.stick, bool):
+        yield Problem("stick", scenario.stick, "is no yes or no", "give True or False")
     if scenario.friction > 1.5:
         yield Problem("friction", scenario.friction, "is no coefficient of friction", "give 0.05 to 0.6")
+    yield from _along_track_problems(scenario)
     if not abs(scenario.rail_inclination) <= 0.1:
         yield Problem(
             "rail_inclination", scenario.rail_inclination, "is too steep", "give a slope such as 1/40 = 0.025"
@@ -172,6 +195,8 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
         elif value not in known:
             yield Problem(key, value, "is not known", nearest(value, known))
     yield from _profile_problems(scenario)
+    if type(scenario.energy) is not bool:
+        yield Problem("energy", scenario.energy, "is neither true nor false", "give true or false")
     if not isinstance(scenario.creep_options, CreepOptions):
         yield Problem("creep_options", scenario.creep_options, "are none", "give klingel.contact.CreepOptions")
     if not _is_grid(scenario.creep_elements):
@@ -180,6 +205,18 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
     if scenario.step > 0.0:
         yield from _step_problems(scenario)
     yield from _run_problems(scenario)
+
+
+def _along_track_problems(scenario: Scenario) -> Iterator[Problem]:
+    adhesion = scenario.adhesion
+    if adhesion is not None and not isinstance(adhesion, Adhesion):
+        yield Problem("adhesion", adhesion, "is none", "give klingel.track.Adhesion")
+    elif adhesion is not None and scenario.friction not in (FRICTION, adhesion.base):
+        remedy = f"give one friction: leave it out, or make it the base {adhesion.base:g} of the adhesion"
+        yield Problem("friction", scenario.friction, "and adhesion contradict each other", remedy)
+    if scenario.headwind != 0.0 and scenario.vehicle.running_resistance is None:
+        remedy = "give the vehicle a [running_resistance]"
+        yield Problem("headwind", scenario.headwind, "needs a running resistance", remedy)
 
 
 def _profile_problems(scenario: Scenario) -> Iterator[Problem]:
@@ -223,12 +260,14 @@ def _nearest_step(step: float, sample_time: float, interval: float) -> float:
 
 
 def _run_problems(scenario: Scenario) -> Iterator[Problem]:
-    if not scenario.speed > 0.0:
+    if not scenario.speed >= 0.0:
         return
     room = scenario.track.length - 2.0 * scenario.start
     if room <= 0.0:
         remedy = f"give more than {2.0 * scenario.start:.1f} m, the vehicle's length included"
         yield Problem("track", f"{scenario.track.length:g} m", "is too short for the vehicle", remedy)
+    elif scenario.duration is None and scenario.speed == 0.0:
+        yield Problem("duration", None, "is missing", "say how long a vehicle that starts from rest shall run [s]")
     elif scenario.duration is not None and scenario.duration * scenario.speed > room:
         remedy = f"give at most {room / scenario.speed:.2f} s, or lengthen the track"
         yield Problem("duration", scenario.duration, "runs over the end of the track [s]", remedy)

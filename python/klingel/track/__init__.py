@@ -1,5 +1,5 @@
-"""Track: straights, clothoids, arcs and cant ramps, one behind the other.
-Curvature and cant are linear inside a segment; rho > 0 is a right-hand curve, cant > 0 raises the left rail."""
+"""Track: straights, clothoids, arcs, cant ramps and grades, one behind the other, and the friction of its rails.
+All are linear inside a segment; rho > 0 is a right-hand curve, cant > 0 raises the left rail, grade > 0 climbs."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from klingel.errors import InputError, Problem
+from klingel.track.adhesion import Adhesion, Patch, Rail
 from klingel.units import Quantity, to_si
 
 CANT_BASE = 1.5
@@ -26,16 +27,24 @@ CANT_MAX = 0.2
 RAMP_MAX = 1.0 / 400.0
 """Steepest cant ramp [m/m]: EN 13803's limit against derailment by twist is 2.5 mm/m."""
 
+GRADE_MAX = 0.1
+"""Steepest grade [-]: beyond it railways use racks."""
+
 Hand = Literal["right", "left"]
 
 
 @dataclass(frozen=True)
 class Segment:
-    """Piece of track: length [m], curvature [1/m] and cant [m] at its start and end, linear between."""
+    """Piece of track: length [m]; curvature [1/m], cant [m] and grade [-] at its start and end, linear between.
+
+    grade: rise over way, positive uphill. It tilts gravity along the track; the vertical curvature that goes with a
+    change of grade is left out.
+    """
 
     length: float
     curvature: tuple[float, float] = (0.0, 0.0)
     cant: tuple[float, float] = (0.0, 0.0)
+    grade: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -57,13 +66,14 @@ class Track:
             raise InputError(problems)
 
     @classmethod
-    def straight(cls, length: Quantity, *, name: str = "") -> Self:
-        """Straight level track of that length [m].
+    def straight(cls, length: Quantity, *, grade: Quantity = 0.0, name: str = "") -> Self:
+        """Straight track of that length [m] and grade [-].
 
         >>> Track.straight("1 km").length
         1000.0
         """
-        return cls((Segment(to_si(length, "m", key="length")),), name=name)
+        slope = to_si(grade, "1", key="grade")
+        return cls((Segment(to_si(length, "m", key="length"), grade=(slope, slope)),), name=name)
 
     @classmethod
     def curve(
@@ -76,11 +86,13 @@ class Track:
         straight_before: Quantity = "150 m",
         straight_after: Quantity = "150 m",
         hand: Hand = "right",
+        grade: Quantity = 0.0,
         name: str = "",
     ) -> Self:
         """A circular arc between two clothoids with linear cant ramps, and straights around them [m].
 
-        radius and cant are given as positive numbers, `hand` says which way the curve turns.
+        radius and cant are given as positive numbers, `hand` says which way the curve turns;
+        grade [-] is the same from end to end.
         """
         lengths = {
             "radius": to_si(radius, "m", key="radius"),
@@ -100,13 +112,14 @@ class Track:
         if problems:
             raise InputError(problems)
         sign = 1.0 if hand == "right" else -1.0
+        climb = (to_si(grade, "1", key="grade"),) * 2
         rho, h, ramp = sign / lengths["radius"], sign * lengths["cant"], lengths["transition"]
         segments = [
-            Segment(lengths["straight_before"]),
-            Segment(ramp, (0.0, rho), (0.0, h)),
-            Segment(lengths["arc"], (rho, rho), (h, h)),
-            Segment(ramp, (rho, 0.0), (h, 0.0)),
-            Segment(lengths["straight_after"]),
+            Segment(lengths["straight_before"], grade=climb),
+            Segment(ramp, (0.0, rho), (0.0, h), climb),
+            Segment(lengths["arc"], (rho, rho), (h, h), climb),
+            Segment(ramp, (rho, 0.0), (h, 0.0), climb),
+            Segment(lengths["straight_after"], grade=climb),
         ]
         return cls(tuple(s for s in segments if s.length > 0.0), name=name)
 
@@ -128,10 +141,15 @@ class Track:
         """Cant at arc length s [m]; errors: InputError outside the track."""
         return self._at(s, [segment.cant for segment in self.segments])
 
+    def grade(self, s: ArrayLike) -> NDArray[np.float64]:
+        """Grade at arc length s [-]; errors: InputError outside the track."""
+        return self._at(s, [segment.grade for segment in self.segments])
+
     def mirrored(self) -> Track:
         """The same track with right and left exchanged."""
         flipped = (
-            Segment(s.length, (-s.curvature[0], -s.curvature[1]), (-s.cant[0], -s.cant[1])) for s in self.segments
+            Segment(s.length, (-s.curvature[0], -s.curvature[1]), (-s.cant[0], -s.cant[1]), s.grade)
+            for s in self.segments
         )
         return Track(tuple(flipped), name=self.name)
 
@@ -163,6 +181,10 @@ def _problems(segments: Sequence[Segment]) -> Iterable[Problem]:
         if abs(highest) > CANT_MAX:
             remedy = f"use {CANT_MAX * 1e3:g} mm or less; plain numbers are metres"
             yield Problem(f"{key}.cant", highest, "is too high [m]", remedy)
+        steepest = max(segment.grade, key=abs)
+        if abs(steepest) > GRADE_MAX:
+            remedy = f"use {GRADE_MAX:g} or less, rise over way"
+            yield Problem(f"{key}.grade", steepest, "is too steep [-]", remedy)
         ramp = abs(segment.cant[1] - segment.cant[0]) / segment.length
         if ramp > RAMP_MAX:
             remedy = f"use 1:{1.0 / RAMP_MAX:g} or flatter: lengthen the transition"
@@ -173,6 +195,9 @@ def _problems(segments: Sequence[Segment]) -> Iterable[Problem]:
         if abs(after.curvature[0] - before.curvature[1]) > 1e-12:
             remedy = f"start it at {before.curvature[1]:g} 1/m, with a transition between"
             yield Problem(f"segments.{i}.curvature", after.curvature, "curvature jumps", remedy)
+        if abs(after.grade[0] - before.grade[1]) > 1e-12:
+            remedy = f"start it at {before.grade[1]:g}, with a vertical transition between"
+            yield Problem(f"segments.{i}.grade", after.grade, "grade jumps", remedy)
 
 
-__all__ = ["CANT_BASE", "Hand", "Segment", "Track"]
+__all__ = ["CANT_BASE", "Adhesion", "Hand", "Patch", "Rail", "Segment", "Track"]

@@ -12,7 +12,8 @@ from pydantic_core import PydanticCustomError
 from klingel.errors import InputError
 from klingel.records import Parameter, Record, parameters, read_toml, validated
 from klingel.vehicle.bodies import AxleBridge, Geometry, RigidBody, SolidWheelset, WheelProfile
-from klingel.vehicle.drive import AnyDrive, Drive, InductionDrive, RunningResistance, SteeringActuator, Transmission
+from klingel.vehicle.drive import AnyDrive, Drive, InductionDrive, SteeringActuator, Transmission
+from klingel.vehicle.resistance import RunningResistance
 from klingel.vehicle.suspension import (
     AntiRollBar,
     LateralStop,

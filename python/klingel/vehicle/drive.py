@@ -17,7 +17,6 @@ from klingel.units import (
     Frequency,
     Inductance,
     PositiveAngularStiffness,
-    PositiveArea,
     PositiveForce,
     PositiveInertia,
     PositiveLength,
@@ -113,18 +112,3 @@ class SteeringActuator(Sourced):
     damping_ratio: PositiveNumber
     stroke: PositiveLength
     stop_stiffness: PositiveStiffness
-
-
-class RunningResistance(Sourced):
-    """What the train that this vehicle runs in feeds into its running-resistance formula.
-
-    formula: name of an empirical formula of `klingel.drives`; cars: number of such vehicles in the train;
-    stock: row of the formula's constants; front_area, partial_perimeter: of the train's cross-section.
-    """
-
-    formula: Literal["sncf_general"]
-    stock: Literal["tgv", "passenger", "freight"]
-    cars: PositiveNumber
-    car_length: PositiveLength
-    front_area: PositiveArea
-    partial_perimeter: PositiveLength

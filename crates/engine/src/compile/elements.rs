@@ -4,7 +4,8 @@
 use super::{Compiler, positive, value};
 use crate::error::EngineError;
 use crate::model::{ActuatorIn, Hold, MaxwellIn, StopIn};
-use klingel_physics::drives::Actuator;
+use crate::spec::DragSpec;
+use klingel_physics::drives::{Actuator, RunningResistance};
 use klingel_physics::elements::{BlowOff, Bushing, Maxwell, Stop};
 
 impl Compiler<'_> {
@@ -80,6 +81,18 @@ impl Compiler<'_> {
             actuators.push(ActuatorIn { name: a.name.clone(), joint, law, state, input: inputs.len() - 1 });
         }
         Ok(actuators)
+    }
+
+    pub(super) fn drag(&self) -> Result<Option<(usize, RunningResistance)>, EngineError> {
+        let Some(DragSpec { body, coefficients: [constant, linear, quadratic], headwind }) = &self.spec.drag else {
+            return Ok(None);
+        };
+        if !headwind.is_finite() {
+            return Err(value("drag.headwind", headwind, "give a finite speed"));
+        }
+        let law =
+            RunningResistance { constant: *constant, linear: *linear, quadratic: *quadratic, headwind: *headwind };
+        Ok(Some((self.body("drag", body)?, law)))
     }
 
     pub(super) fn hold(&mut self) -> Result<Option<Hold>, EngineError> {

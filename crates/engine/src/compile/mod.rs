@@ -1,5 +1,5 @@
 //! Spec to model: names become indices, design points become body-fixed points, numbers are checked.
-//! Order of the states: bodies, rotors, dampers' forces, actuators, drives, speed hold.
+//! Order of the states: bodies, rotors, dampers' forces, actuators, drives, speed hold, stick of the wheels.
 
 mod elements;
 mod motors;
@@ -10,10 +10,13 @@ use crate::inputs::Places;
 use crate::model::{Body, Course, Drive, Joint, Model, Rotor};
 use crate::spec::{BodySpec, JointSpec, RunSpec, SegmentSpec, Spec, TrackSpec, UniformSpec};
 use klingel_physics::contact::Material;
-use klingel_physics::track::{Alignment, Segment, UniformTrack};
+use klingel_physics::track::{Adhesion, Alignment, Segment, UniformTrack};
 
 use motors::motor_inputs;
 pub use wheels::{named_profile, pair_geometry, prepare};
+
+/// Speed v0 that keeps creepages finite at standstill \[m/s\].
+const CREEP_FLOOR: f64 = 0.1;
 
 /// Compiles a spec.
 ///
@@ -42,9 +45,9 @@ pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
     let actuators = c.actuators(&mut inputs)?;
     let dc_motors = c.dc_motors()?;
     let induction_motors = c.induction_motors()?;
-    let drag =
-        spec.drag.as_ref().map(|d| Ok::<_, EngineError>((c.body("drag", &d.body)?, d.coefficients))).transpose()?;
+    let drag = c.drag()?;
     let hold = c.hold()?;
+    let adhesion = spec.adhesion.as_ref().map(|a| Adhesion::new(&a.s, &a.left, &a.right)).transpose()?;
     let material = Material::STEEL;
     let wheels = c.wheels(&material)?;
     let (creep, falling_friction) = wheels::creep_law(&spec.creep, &material)?;
@@ -75,8 +78,10 @@ pub fn compile(spec: &Spec) -> Result<Model, EngineError> {
         induction_motors,
         drag,
         hold,
+        adhesion,
         creep,
         falling_friction,
+        creep_floor: CREEP_FLOOR,
         contact_dissipation: spec.creep.contact_dissipation,
         poles: states.poles,
         state_names: states.names,
@@ -94,10 +99,13 @@ fn course(track: &TrackSpec) -> Result<Course, EngineError> {
             return Err(value("track.segments", track.segments.len(), "leave them out on a uniform track"));
         }
         // the limits of a laid track hold as well
-        Alignment::new(&[Segment { length: 1.0, curvature: [curvature; 2], cant: [cant; 2] }], cant_base)?;
+        Alignment::new(
+            &[Segment { length: 1.0, curvature: [curvature; 2], cant: [cant; 2], grade: [0.0; 2] }],
+            cant_base,
+        )?;
         return Ok(Course::Uniform(UniformTrack { curvature, cant, cant_base }));
     }
-    let segment = |s: &SegmentSpec| Segment { length: s.length, curvature: s.curvature, cant: s.cant };
+    let segment = |s: &SegmentSpec| Segment { length: s.length, curvature: s.curvature, cant: s.cant, grade: s.grade };
     let segments: Vec<Segment> = track.segments.iter().map(segment).collect();
     Ok(Course::Laid(Alignment::new(&segments, cant_base)?))
 }
@@ -131,6 +139,9 @@ fn check_run(spec: &Spec, track: &Course) -> Result<(), EngineError> {
     let RunSpec { duration, step, record_interval, .. } = spec.run;
     positive("run", "duration", duration)?;
     positive("run", "step", step)?;
+    if !(spec.run.implicit_below >= 0.0) {
+        return Err(value("run.implicit_below", spec.run.implicit_below, "give a speed, or 0 for explicit steps only"));
+    }
     if !whole(record_interval / step) {
         return Err(value("run.record_interval", record_interval, "make it a multiple of the step"));
     }

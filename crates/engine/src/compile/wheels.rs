@@ -11,7 +11,7 @@ use klingel_physics::contact::{ContactError, CreepForce, CreepLaw, Material, Pai
 use std::sync::Arc;
 
 impl Compiler<'_> {
-    pub(super) fn wheels(&self, material: &Material) -> Result<Vec<Wheel>, EngineError> {
+    pub(super) fn wheels(&mut self, material: &Material) -> Result<Vec<Wheel>, EngineError> {
         let tables = tables_of(self.spec, material)?;
         let mut wheels = Vec::new();
         for w in &self.spec.wheels {
@@ -21,6 +21,11 @@ impl Compiler<'_> {
                 .ok_or_else(|| value(format!("{}.pair", w.name), w.pair, "give the index of a contact pair"))?;
             let half_tape_distance = pair.tape_circle();
             let sign = if w.side == Side::Right { 1.0 } else { -1.0 };
+            let stick = self.spec.creep.stick.then(|| {
+                let first = self.states.add(format!("{}.stick_x", w.name), "1", 0.0);
+                self.states.add(format!("{}.stick_y", w.name), "1", 0.0);
+                first
+            });
             wheels.push(Wheel {
                 name: w.name.clone(),
                 body,
@@ -31,6 +36,7 @@ impl Compiler<'_> {
                 half_tape_distance,
                 radius: pair.radius,
                 centre: [0.0, sign * half_tape_distance, -pair.radius - self.bodies[body].position[2]],
+                stick,
             });
         }
         Ok(wheels)

@@ -1,6 +1,8 @@
 //! The engine against closed forms: bodies, rotors, joints, wheels and tracks whose motion is known exactly.
 //! Whole vehicles are tested in `tests/physics` through the Python package.
 
+mod accounts;
+mod along_track;
 mod bogie;
 mod common;
 mod drives;

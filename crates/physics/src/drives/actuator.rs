@@ -58,8 +58,18 @@ impl Actuator {
     /// elongation \[m\] passes the half stroke.
     #[inline(always)]
     pub fn force<S: Scalar>(&self, state: &ActuatorState<S>, elongation: S) -> S {
-        let beyond = elongation - elongation.clamp(-self.stroke, self.stroke);
-        state.force - beyond * self.stop_stiffness
+        state.force - self.beyond(elongation) * self.stop_stiffness
+    }
+
+    /// Elastic energy of the end stop \[J\]; the power of the rest of the force is the actuator's work.
+    pub fn stored<S: Scalar>(&self, elongation: S) -> S {
+        self.beyond(elongation).square() * (0.5 * self.stop_stiffness)
+    }
+
+    /// How far the end stop is pressed in \[m\].
+    #[inline(always)]
+    fn beyond<S: Scalar>(&self, elongation: S) -> S {
+        elongation - elongation.clamp(-self.stroke, self.stroke)
     }
 }
 
@@ -105,6 +115,15 @@ mod tests {
         assert!(fastest <= 200e3 && fastest > 195e3);
         let (s, _) = respond(90e3, 0.05);
         assert!(s.force < 200e3 * 0.05);
+    }
+
+    #[test]
+    fn the_end_stop_stores_what_it_takes() {
+        let at_rest = ActuatorState::default();
+        for u in [-0.03, 0.01, 0.025] {
+            let slope = (ACTUATOR.stored(u + 1e-7) - ACTUATOR.stored(u - 1e-7)) / 2e-7;
+            assert!((slope + ACTUATOR.force(&at_rest, u)).abs() < 1e-3, "{u}: {slope}");
+        }
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod dc;
 mod field_oriented;
 mod field_weakening;
 mod induction;
+mod resistance;
 mod transmission;
 
 pub use actuator::{Actuator, ActuatorState};
@@ -13,4 +14,5 @@ pub use dc::{DcField, DcMotor};
 pub use field_oriented::{Excited, FieldOriented, FieldOrientedState};
 pub use field_weakening::{FieldError, field_current, wheel_torque, wheel_torque_max};
 pub use induction::{InductionMotor, InductionState};
+pub use resistance::RunningResistance;
 pub use transmission::{Transmission, TransmissionState};

@@ -67,17 +67,17 @@ impl Transmission {
         }
     }
 
-    /// Energy in the rotor and in the shaft \[J\], the body that carries them at rest.
+    /// Elastic energy of the shaft \[J\]; the rotor's kinetic energy goes with its absolute speed, which the engine knows.
     #[inline(always)]
-    pub fn stored<S: Scalar>(&self, state: &TransmissionState<S>) -> S {
-        (state.motor_speed.square() * self.rotor_inertia + state.twist.square() * self.stiffness) * 0.5
+    pub fn stored<S: Scalar>(&self, twist: S) -> S {
+        twist.square() * (0.5 * self.stiffness)
     }
 
-    /// Power lost in bearings and shaft \[W\].
+    /// Power lost in the rotor's bearings and in the shaft \[W\].
     #[inline(always)]
-    pub fn dissipated<S: Scalar>(&self, state: &TransmissionState<S>, wheel_speed: S) -> S {
-        state.motor_speed.square() * self.rotor_damping
-            + self.twist_rate(state.motor_speed, wheel_speed).square() * self.damping
+    pub fn dissipated<S: Scalar>(&self, motor_speed: S, wheel_speed: S) -> [S; 2] {
+        let bearings = motor_speed.square() * self.rotor_damping;
+        [bearings, self.twist_rate(motor_speed, wheel_speed).square() * self.damping]
     }
 
     /// The state and the air-gap torque \[N m\] that hold a wheel speed \[rad/s\] and a shaft torque \[N m\].
@@ -133,13 +133,12 @@ mod tests {
         let (air_gap_torque, wheel_speed) = (110.0, 106.0);
         let r = LAW.rates(&state, air_gap_torque, wheel_speed);
         let growing = |h: f64| {
-            LAW.stored(&TransmissionState {
-                motor_speed: state.motor_speed + h * r.motor_speed,
-                twist: state.twist + h * r.twist,
-            })
+            let motor_speed = state.motor_speed + h * r.motor_speed;
+            0.5 * LAW.rotor_inertia * motor_speed * motor_speed + LAW.stored(state.twist + h * r.twist)
         };
         let stored = (growing(1e-3) - growing(-1e-3)) / 2e-3;
-        let out = LAW.shaft_torque(&state, wheel_speed) * wheel_speed + LAW.dissipated(&state, wheel_speed);
+        let out = LAW.shaft_torque(&state, wheel_speed) * wheel_speed
+            + LAW.dissipated(state.motor_speed, wheel_speed).iter().sum::<f64>();
         let input = air_gap_torque * state.motor_speed;
         assert!((input - out - stored).abs() < 1e-9 * input);
     }

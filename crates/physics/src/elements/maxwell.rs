@@ -47,6 +47,17 @@ impl Maxwell {
         (elongation_rate - self.velocity(force)) * self.stiffness
     }
 
+    /// Elastic energy of the spring \[J\].
+    pub fn stored<S: Scalar>(&self, force: S) -> S {
+        force.square() * (0.5 / self.stiffness)
+    }
+
+    /// Power that the damper turns to heat \[W\].
+    #[inline(always)]
+    pub fn dissipated<S: Scalar>(&self, force: S) -> S {
+        force * self.velocity(force)
+    }
+
     /// The pole k/c \[1/s\] that the integrator takes exactly.
     pub fn pole(&self) -> f64 {
         self.stiffness / self.damping
@@ -64,7 +75,18 @@ mod tests {
         assert!((d.velocity(13e3) - (0.06 + 0.1)).abs() < 1e-12);
         for f in [-3e4, -1e3, 5.0, 2e4] {
             assert_eq!(d.velocity(-f), -d.velocity(f));
-            assert!(d.velocity(f) * f > 0.0);
+            assert!(d.dissipated(f) > 0.0);
+        }
+    }
+
+    /// What the element takes up is stored in its spring or turned to heat, blown off or not.
+    #[test]
+    fn power_balances() {
+        let d = Maxwell { stiffness: 8e6, damping: 2e5, blow_off: Some(BlowOff { force: 12e3, damping: 1e4 }) };
+        for (f, rate) in [(5e3, 0.2), (2e4, 0.3), (-2e4, 0.1)] {
+            let h = 1e-9;
+            let grown = d.stored(f + h * d.rate(f, rate)) - d.stored(f - h * d.rate(f, rate));
+            assert!((f * rate - grown / (2.0 * h) - d.dissipated(f)).abs() < 1e-4 * f.abs());
         }
     }
 }

@@ -64,6 +64,18 @@ impl Stop {
 }
 
 impl Stop {
+    /// Elastic energy at a deflection \[J\]: the area under the curve.
+    pub fn stored<S: Scalar>(&self, deflection: S) -> S {
+        deflection.lift(|u| {
+            let (x, force) = (u.abs(), self.force(u));
+            let inside = self.deflection.partition_point(|&d| d < x).max(1);
+            let area =
+                |i: usize| 0.5 * (self.force[i] + self.force[i - 1]) * (self.deflection[i] - self.deflection[i - 1]);
+            let last = 0.5 * (force.abs() + self.force[inside - 1]) * (x - self.deflection[inside - 1]);
+            ((1..inside).map(area).sum::<f64>() + last, force)
+        })
+    }
+
     /// How far a deflection \[m\] lies from the nearest corner of the curve, over the width of the interval behind it.
     pub fn kink(&self, deflection: f64) -> Option<f64> {
         let slope = |i: usize| (self.force[i + 1] - self.force[i]) / (self.deflection[i + 1] - self.deflection[i]);
@@ -85,6 +97,17 @@ mod tests {
         let s = Stop::new(&[0.0, 0.02, 0.03, 0.04], &[0.0, 0.0, 10.0, 20.0]).unwrap();
         assert!((s.kink(-0.021).unwrap() - 0.05).abs() < 1e-12);
         assert_eq!(Stop::new(&[0.0, 1.0], &[0.0, 1.0]).unwrap().kink(0.3), None);
+    }
+
+    #[test]
+    fn the_force_is_the_slope_of_the_energy() {
+        let s = Stop::new(&[0.0, 0.02, 0.03, 0.04], &[0.0, 10.0, 500.0, 2000.0]).unwrap();
+        assert_eq!(s.stored(0.0), 0.0);
+        for u in [-0.05, -0.01, 0.005, 0.025, 0.035, 0.06] {
+            let slope = (s.stored(u + 1e-7) - s.stored(u - 1e-7)) / 2e-7;
+            assert!((slope - s.force(u)).abs() < 1e-4, "{u}: {slope}");
+            assert_eq!(s.stored(crate::Dual::<1>::variable(u, 0)).slope[0], s.force(u));
+        }
     }
 
     #[test]

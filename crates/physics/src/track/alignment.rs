@@ -1,16 +1,18 @@
 //! Plan alignment with cant: straights, circular arcs and clothoids with linear cant ramps.
-//! The cant turns the track about the centre line at top of rail, so that line stays in the horizontal plane.
+//! The cant turns the track about the centre line at top of rail, so that line stays in the horizontal plane; a grade
+//! tilts gravity against it and leaves its vertical curvature out.
 
 use crate::Scalar;
 use crate::math::{Rotation, Vec3};
 use thiserror::Error;
 
-/// A piece in which curvature \[1/m\] and cant \[m\] run linearly from the first to the second value.
+/// A piece in which curvature \[1/m\], cant \[m\] and grade \[-\] run linearly from the first to the second value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
     pub length: f64,
     pub curvature: [f64; 2],
     pub cant: [f64; 2],
+    pub grade: [f64; 2],
 }
 
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -68,6 +70,8 @@ pub struct TrackFrame<S> {
     pub cant_angle: S,
     /// Its derivative along the arc \[rad/m\].
     pub twist: S,
+    /// Rise over way, positive uphill \[-\]: tangent of the angle between the track and the level.
+    pub grade: S,
 }
 
 impl<S: Scalar> TrackFrame<S> {
@@ -80,6 +84,12 @@ impl<S: Scalar> TrackFrame<S> {
         let (s, c) = self.cant_angle.sin_cos();
         Vec3::new(self.twist, self.curvature * s, self.curvature * c)
     }
+    /// Gravity of size one as it acts along the track and at right angles to the plane of its centre line:
+    /// (-sin, cos) of the angle that the grade is the tangent of.
+    pub fn gravity(&self) -> (S, S) {
+        let across = (self.grade.square() + 1.0).sqrt().recip();
+        (-(self.grade * across), across)
+    }
 }
 
 impl Alignment {
@@ -87,7 +97,7 @@ impl Alignment {
     ///
     /// ```
     /// use klingel_physics::track::{Alignment, Segment};
-    /// let arc = Segment { length: 100.0, curvature: [0.01; 2], cant: [0.0; 2] };
+    /// let arc = Segment { length: 100.0, curvature: [0.01; 2], cant: [0.0; 2], grade: [0.0; 2] };
     /// let frame = Alignment::new(&[arc], 1.5).unwrap().at(100.0_f64);
     /// assert!((frame.x - 100.0 * 1.0_f64.sin()).abs() < 1e-12 && (frame.heading - 1.0).abs() < 1e-15);
     /// ```
@@ -106,6 +116,9 @@ impl Alignment {
             }
             for value in segment.cant {
                 in_range(index, "cant", value, 0.3, "m")?;
+            }
+            for value in segment.grade {
+                in_range(index, "grade", value, 0.1, "-")?;
             }
             let count = (length / SPACING).ceil().max(1.0);
             let spacing = length / count;
@@ -128,22 +141,27 @@ impl Alignment {
         self.length
     }
 
-    /// The frame at arc length `s`; beyond the ends the centre line goes on straight, with the last cant.
-    pub fn at<S: Scalar>(&self, s: S) -> TrackFrame<S> {
-        let [x, y, heading, curvature, cant_angle, twist] = S::lift_n([s], |[s]| self.evaluate(s));
-        TrackFrame { x, y, heading, curvature, cant_angle, twist }
+    /// Whether any piece has a grade.
+    pub fn climbs(&self) -> bool {
+        self.pieces.iter().any(|p| p.segment.grade != [0.0; 2])
     }
 
-    /// Values and derivatives of (x, y, heading, curvature, cant angle, twist).
-    fn evaluate(&self, s: f64) -> ([f64; 6], [[f64; 1]; 6]) {
+    /// The frame at arc length `s`; beyond the ends the centre line goes on straight, with the last cant and grade.
+    pub fn at<S: Scalar>(&self, s: S) -> TrackFrame<S> {
+        let [x, y, heading, curvature, cant_angle, twist, grade] = S::lift_n([s], |[s]| self.evaluate(s));
+        TrackFrame { x, y, heading, curvature, cant_angle, twist, grade }
+    }
+
+    /// Values and derivatives of (x, y, heading, curvature, cant angle, twist, grade).
+    fn evaluate(&self, s: f64) -> ([f64; 7], [[f64; 1]; 7]) {
         if s < 0.0 || s > self.length {
             return self.beyond(s);
         }
         let i = self.pieces.iter().rposition(|p| s >= p.start).unwrap_or(0);
         let p = &self.pieces[i];
         let u = s - p.start;
-        let Segment { length, curvature: [k0, k1], cant: [h0, h1] } = p.segment;
-        let (dk, dh) = ((k1 - k0) / length, (h1 - h0) / length);
+        let Segment { length, curvature: [k0, k1], cant: [h0, h1], grade: [g0, g1] } = p.segment;
+        let [dk, dh, dg] = [k1 - k0, h1 - h0, g1 - g0].map(|change| change / length);
         let heading = p.heading_at(u);
         let (curvature, h) = (k0 + dk * u, (h0 + dh * u) / self.cant_base);
         let cos_cant = (1.0 - h * h).sqrt();
@@ -151,16 +169,17 @@ impl Alignment {
         let (x, y) = p.position(u);
         let (sin, cos) = heading.sin_cos();
         (
-            [x, y, heading, curvature, h.asin(), twist],
-            [[cos], [sin], [curvature], [dk], [twist], [twist * twist * h / cos_cant]],
+            [x, y, heading, curvature, h.asin(), twist, g0 + dg * u],
+            [[cos], [sin], [curvature], [dk], [twist], [twist * twist * h / cos_cant], [dg]],
         )
     }
 
-    fn beyond(&self, s: f64) -> ([f64; 6], [[f64; 1]; 6]) {
+    fn beyond(&self, s: f64) -> ([f64; 7], [[f64; 1]; 7]) {
         let end = s.clamp(0.0, self.length);
-        let ([x, y, heading, _, cant, _], _) = self.evaluate(end);
+        let ([x, y, heading, _, cant, _, grade], _) = self.evaluate(end);
         let ((sin, cos), ds) = (heading.sin_cos(), s - end);
-        ([x + cos * ds, y + sin * ds, heading, 0.0, cant, 0.0], [[cos], [sin], [0.0], [0.0], [0.0], [0.0]])
+        let values = [x + cos * ds, y + sin * ds, heading, 0.0, cant, 0.0, grade];
+        (values, [[cos], [sin], [0.0], [0.0], [0.0], [0.0], [0.0]])
     }
 }
 
@@ -237,9 +256,9 @@ mod tests {
         let (r, h) = (sign / 300.0, sign * 0.16);
         Alignment::new(
             &[
-                Segment { length: 90.0, curvature: [0.0; 2], cant: [0.0; 2] },
-                Segment { length: 120.0, curvature: [0.0, r], cant: [0.0, h] },
-                Segment { length: 180.0, curvature: [r; 2], cant: [h; 2] },
+                Segment { length: 90.0, curvature: [0.0; 2], cant: [0.0; 2], grade: [0.0; 2] },
+                Segment { length: 120.0, curvature: [0.0, r], cant: [0.0, h], grade: [0.0, 0.02] },
+                Segment { length: 180.0, curvature: [r; 2], cant: [h; 2], grade: [0.02; 2] },
             ],
             1.5,
         )
@@ -248,8 +267,11 @@ mod tests {
 
     #[test]
     fn circle_closes_on_its_exact_points() {
-        let arc =
-            Alignment::new(&[Segment { length: 900.0, curvature: [1.0 / 300.0; 2], cant: [0.0; 2] }], 1.5).unwrap();
+        let arc = Alignment::new(
+            &[Segment { length: 900.0, curvature: [1.0 / 300.0; 2], cant: [0.0; 2], grade: [0.0; 2] }],
+            1.5,
+        )
+        .unwrap();
         for s in [0.3, 1.7, 333.3, 899.9] {
             let f = arc.at(s);
             let (sin, cos) = (s / 300.0_f64).sin_cos();
@@ -271,6 +293,7 @@ mod tests {
                 (d.curvature, a.curvature, b.curvature),
                 (d.cant_angle, a.cant_angle, b.cant_angle),
                 (d.twist, a.twist, b.twist),
+                (d.grade, a.grade, b.grade),
             ] {
                 assert!((slope.slope[0] - (hi - lo) / (2.0 * h)).abs() < 1e-9);
             }
@@ -295,9 +318,19 @@ mod tests {
 
     #[test]
     fn bad_segments_are_named() {
-        let bad = Segment { length: -1.0, curvature: [0.0; 2], cant: [0.0; 2] };
+        let bad = Segment { length: -1.0, curvature: [0.0; 2], cant: [0.0; 2], grade: [0.0; 2] };
         assert_eq!(Alignment::new(&[bad], 1.5).unwrap_err(), AlignmentError::Length { index: 0, length: -1.0 });
-        let tight = Segment { length: 10.0, curvature: [0.1; 2], cant: [0.0; 2] };
+        let tight = Segment { length: 10.0, curvature: [0.1; 2], cant: [0.0; 2], grade: [0.0; 2] };
         assert!(Alignment::new(&[tight], 1.5).unwrap_err().to_string().contains("curvature 0.1"));
+        let steep = Segment { length: 10.0, curvature: [0.0; 2], cant: [0.0; 2], grade: [0.0, 0.2] };
+        assert!(Alignment::new(&[steep], 1.5).unwrap_err().to_string().contains("grade 0.2"));
+    }
+
+    #[test]
+    fn a_grade_turns_gravity_and_keeps_its_size() {
+        let track = curve(1.0);
+        let (along, across) = track.at(250.0).gravity();
+        assert!((along / across + 0.02).abs() < 1e-15 && (along * along + across * across - 1.0).abs() < 1e-15);
+        assert_eq!(track.at(10.0).gravity(), (0.0, 1.0));
     }
 }

@@ -46,6 +46,7 @@ impl<S: Scalar> UniformTrack<S> {
             curvature: self.curvature,
             cant_angle: slope.lift(|h| (h.asin(), 1.0 / (1.0 - h * h).sqrt())),
             twist: S::zero(),
+            grade: S::zero(),
         }
     }
 }
@@ -58,7 +59,7 @@ mod tests {
     #[test]
     fn it_is_the_arc_of_an_alignment() {
         let (rho, cant) = (-1.0 / 300.0, -0.16);
-        let arc = Segment { length: 60.0, curvature: [rho; 2], cant: [cant; 2] };
+        let arc = Segment { length: 60.0, curvature: [rho; 2], cant: [cant; 2], grade: [0.0; 2] };
         let alignment = Alignment::new(&[arc], 1.5).unwrap();
         for ahead in [0.0, 7.3, 55.0] {
             let (a, b) = (alignment.at(ahead), UniformTrack { curvature: rho, cant, cant_base: 1.5 }.at(ahead));

@@ -12,6 +12,7 @@ mod linear;
 mod options;
 mod polach;
 mod shen;
+mod stick;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -21,6 +22,7 @@ pub use exact::{Exact, ExactSolution, exact_force, exact_forces};
 pub use fastsim::MOST_ELEMENTS;
 pub use kalker::Kalker;
 pub use options::{CreepOptions, FallingFriction, PolachReduction, SlopeReduction};
+pub use stick::{relaxation_length, stick_rates};
 pub use table::{CREEP_TABLE, CreepTable, Maker, Provenance};
 
 use super::Material;
@@ -145,6 +147,27 @@ impl CreepForce {
             |x| {
                 let f = self.evaluate(core::array::from_fn(|i| Dual::<7>::variable(x[i], i)));
                 (f.map(|f| f.value), f.map(|f| f.slope))
+            },
+        )
+    }
+
+    /// The same forces with slopes for linearly implicit steps: over the creepages along and across those of the linear
+    /// theory, scaled as far as friction has lowered its force; none over the rest. A slope of the law itself vanishes in
+    /// sliding, and a step that trusts it leaps across all of adhesion to sliding back; such a secant brings it to rest.
+    pub fn force_with_secants<S: Scalar>(&self, c: &RollingContact<S>) -> [S; 3] {
+        S::lift_n_lazy(
+            [c.a, c.b, c.normal_force, c.friction, c.xi, c.eta, c.phi],
+            |x| self.evaluate(x),
+            |x| {
+                let force = self.evaluate(x);
+                let [a, b, normal_force, friction, xi, eta, phi] = x;
+                let c = RollingContact { a, b, normal_force, friction, xi, eta, phi };
+                let [x, y, _] = linear::linear(&self.kalker, self.shear_modulus, &c);
+                let share = (force[0].hypot(force[1]) / x.hypot(y).max(f64::MIN_POSITIVE)).min(1.0);
+                let [c11, c22, ..] = self.kalker.at(a / b).map(|c| -share * self.shear_modulus * a * b * c);
+                let mut slopes = [[0.0; 7]; 3];
+                (slopes[0][4], slopes[1][5]) = (c11, c22);
+                (force, slopes)
             },
         )
     }
