@@ -8,7 +8,7 @@ use crate::model::{Model, Wheel};
 use crate::motion::Motion;
 use crate::rates::Workspace;
 use klingel_physics::Scalar;
-use klingel_physics::contact::creep::{CreepTable, relaxation_length, stick_rates};
+use klingel_physics::contact::creep::{CreepTable, StickingContact, relaxation_length};
 use klingel_physics::contact::{Patch, RollingContact};
 use klingel_physics::math::Vec3;
 
@@ -128,7 +128,7 @@ fn wheel_on_rail<S: Scalar>(
         let creepages = [slip_T.x() / v_ref, slip_T.dot(across) / v_ref, w_T.dot(into_rail) / v_ref];
         Touch { point_F, point_T, across, into_rail, approach, normal, mean_speed, v_ref, creepages }
     };
-    let lag = wheel.stick.map(|first| lag(m, wheel, patches.iter().map(|p| (p, touch(p))), first, x, dx));
+    let lag = wheel.stick.map(|first| lag(m, wheel, patches.iter().map(|p| (p, touch(p))), first, x, dx, secants));
 
     let mut state = WheelState { friction: standing_friction, ..WheelState::default() };
     let mut moment_T = Vec3::zero();
@@ -214,6 +214,7 @@ fn lag<'a, S: Scalar>(
     first: usize,
     x: &[S],
     dx: &mut [S],
+    secants: bool,
 ) -> [S; 2] {
     // a wheel in the air has a patch of 5 mm with 1 N, and with G a b C11 over the load as under a wheel of some kN
     let (mut load, mut stiffness) = (S::one(), S::constant(300.0));
@@ -230,9 +231,14 @@ fn lag<'a, S: Scalar>(
         }
     }
     let creepage = [x[first], x[first + 1]];
-    let (slip, length) = (slip.map(|w| w / load), relaxation_length(length / load));
-    let largest = load * (SLIDING * wheel.friction) / stiffness;
-    let rates = stick_rates(creepage, slip, speed / load, length, largest, m.creep_floor);
+    let contact = StickingContact {
+        creepage,
+        slip: slip.map(|w| w / load),
+        speed: speed / load,
+        length: relaxation_length(length / load),
+        largest: load * (SLIDING * wheel.friction) / stiffness,
+    };
+    let rates = if secants { contact.rates_with_secants(m.creep_floor) } else { contact.rates(m.creep_floor) };
     dx[first..first + 2].copy_from_slice(&rates);
     [0, 1].map(|i| creepage[i] - quasi_steady[i] / load)
 }

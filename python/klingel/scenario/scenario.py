@@ -50,8 +50,8 @@ class Scenario:
     wheels, None for the vehicle's; rail: its profile or the name of a standard one; rail_inclination (slope, positive
     leans inwards), gauge;
     stick: creepages need way to build up, so that standing wheels stick instead of creeping;
-    step: of the integrator; record_interval: of the results; duration: None runs to the end of the track, a vehicle
-    that starts from rest needs one; energy: book it (channels `energy.*`, see `klingel.assess.energy`).
+    step: of the integrator; record_interval: of the results; duration: None runs to the end of the track, from rest
+    it is needed; energy: book it (channels `energy.*`, see `klingel.assess.energy`).
     Errors: InputError with every problem.
 
     >>> from klingel import library

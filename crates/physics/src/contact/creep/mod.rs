@@ -22,7 +22,7 @@ pub use exact::{Exact, ExactSolution, exact_force, exact_forces};
 pub use fastsim::MOST_ELEMENTS;
 pub use kalker::Kalker;
 pub use options::{CreepOptions, FallingFriction, PolachReduction, SlopeReduction};
-pub use stick::{relaxation_length, stick_rates};
+pub use stick::{StickingContact, relaxation_length};
 pub use table::{CREEP_TABLE, CreepTable, Maker, Provenance};
 
 use super::Material;
