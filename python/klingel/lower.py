@@ -334,15 +334,17 @@ def _induction_drives(vehicle: Vehicle, wheels: tuple[Axle, ...], speed: float) 
     if not isinstance(drive, InductionDrive):
         return
     point = induction_point(vehicle, speed)
+    motor = {key: getattr(drive, key) for key in CIRCUIT}
+    assumed = drive.rotor_resistance_assumed
     for axle in wheels:
         for side, _ in SIDES:
             yield {
                 "name": f"{axle.name}.{side}",
                 "body": axle.name,
                 "rotor": side,
-                "motor": {key: getattr(drive, key) for key in CIRCUIT},
+                "motor": motor,
                 "control": {
-                    "model": None,
+                    "model": None if assumed is None else motor | {"rotor_resistance": assumed},
                     "torque_bandwidth": drive.torque_bandwidth,
                     "flux_bandwidth": drive.flux_bandwidth,
                     "flux_rated": drive.rotor_flux_rated,

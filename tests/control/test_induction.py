@@ -135,6 +135,19 @@ def test_the_speed_loop_of_s_has_a_gain_margin_of_2_and_a_phase_margin_of_45_deg
         assert np.min(phases, initial=180.0) > 45.0
 
 
+def test_a_warm_rotor_turns_the_flux_off_its_axis() -> None:
+    """The control takes the rotor for cold: less torque than commanded, which a linear model still runs about."""
+    warm = VEHICLE.replace(
+        drive=DRIVE.model_copy(update={"rotor_resistance": 0.1077, "rotor_resistance_assumed": DRIVE.rotor_resistance})
+    )
+    model = kl.linearise(kl.Scenario(warm, Track.straight(500.0), speed=SPEED))
+    state = dict(zip([s.name for s in model.states], model.x, strict=True))
+    found = dict(zip([o.name for o in model.outputs], model.y, strict=True))
+    wheel = "bogie1.wheelset1.left"
+    assert state[f"{wheel}.rotor_flux_q"] > 0.01
+    assert 0.7 < found[f"{wheel}.air_gap_torque"] / found[f"{wheel}.torque_command"] < 0.99
+
+
 def y_max(run: xr.Dataset) -> float:
     assert run.attrs["outcome"] == "completed"
     return max(float(np.abs(run[f"{w.name}.y"]).max()) for w in WHEELSETS)

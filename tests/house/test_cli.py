@@ -87,7 +87,7 @@ def test_bad_input_is_one_message_and_exit_2(
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (('"108 km/h"', '"18 km/h"'), "run above the base speed"),
+        (('"108 km/h"', '"900 km/h"'), "is more than the motor gives"),
         (("mechatronic_irw", "manchester_coach"), "manchester_coach is passive"),
         (('"0.2 s"', '"0.2 s"\nstep = "5 ms"'), "step = 0.005: does not divide"),
     ],

@@ -100,9 +100,7 @@ def rootlocus(
     parameter: Annotated[
         str, typer.Option(help="speed, conicity, friction, vehicle.yaw_damper.damping, control.frequency ...")
     ] = "speed",
-    start: Annotated[
-        str, typer.Option("--from", help="First value, with its unit; speeds above the base speed of the drives.")
-    ] = "15 m/s",
+    start: Annotated[str, typer.Option("--from", help="First value, with its unit.")] = "15 m/s",
     end: Annotated[str, typer.Option("--to", help="Last value, with its unit.")] = "80 m/s",
     points: Annotated[int, typer.Option(min=2, help="Values, evenly spaced.")] = 60,
     out: Annotated[Path, typer.Option(help="Picture (.png, .svg).", dir_okay=False)] = Path("rootlocus.png"),
@@ -170,9 +168,7 @@ def critical_speed(
     settings: Setting = None,
     without: Without = None,
     plant: Plant = False,
-    lowest: Annotated[
-        str, typer.Option(help="Where the search begins; above the base speed of the drives, where there are any.")
-    ] = "10 m/s",
+    lowest: Annotated[str, typer.Option(help="Where the search begins.")] = "10 m/s",
     highest: Annotated[str, typer.Option(help="Where it ends.")] = "120 m/s",
     nonlinear: Annotated[
         bool, typer.Option("--nonlinear", help="Also the limit cycle: runs that slow down and at constant speed.")

@@ -30,7 +30,8 @@ class Demand:
 def torque_demand(vehicle: Vehicle, drive: Transmission, speed: float, resistance: Resistance | None = None) -> Demand:
     """What each wheel of a vehicle with `drive` needs at `speed` [m/s].
 
-    resistance: of the vehicle [N]; None for the formula of its file. Error: InputError for a negative speed.
+    resistance: of the vehicle [N]; None for the formula of its file. Nothing at rest.
+    Error: InputError for a negative speed.
 
     >>> from klingel import library
     >>> vehicle = library.vehicle("mechatronic_irw")

@@ -69,7 +69,8 @@ class InductionDrive(Transmission):
 
     The equivalent circuit is that of one phase (star), rotor values seen from the stator. rotor_flux_rated,
     current_max, voltage_max: amplitudes of a phase; current_rated: r.m.s.; flux_share: of voltage_max that the flux may
-    take at speed; torque_bandwidth, flux_bandwidth: of the closed loops of torque and flux.
+    take at speed; torque_bandwidth, flux_bandwidth: of the closed loops of torque and flux; rotor_resistance_assumed:
+    what the control takes the rotor's for, which changes with its temperature by a third (None: for what it is).
     """
 
     kind: Literal["induction"] = "induction"
@@ -86,6 +87,7 @@ class InductionDrive(Transmission):
     flux_share: Ratio
     torque_bandwidth: Rate
     flux_bandwidth: Rate
+    rotor_resistance_assumed: Resistance | None = None
 
 
 def _kind(value: Any) -> str:
