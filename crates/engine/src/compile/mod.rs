@@ -139,7 +139,7 @@ fn check_run(spec: &Spec, track: &Course) -> Result<(), EngineError> {
     let RunSpec { duration, step, record_interval, .. } = spec.run;
     positive("run", "duration", duration)?;
     positive("run", "step", step)?;
-    if !(spec.run.implicit_below >= 0.0) {
+    if spec.run.implicit_below < 0.0 || spec.run.implicit_below.is_nan() {
         return Err(value("run.implicit_below", spec.run.implicit_below, "give a speed, or 0 for explicit steps only"));
     }
     if !whole(record_interval / step) {
