@@ -314,6 +314,15 @@ impl Model {
         x[self.bodies[self.reference()].velocities().start]
     }
 
+    /// Friction of a standing contact at the place of a wheel.
+    #[inline]
+    pub fn friction<S: Scalar>(&self, wheel: &Wheel, x: &[S]) -> S {
+        match &self.adhesion {
+            Some(adhesion) => adhesion.at(x[self.bodies[wheel.body].state], wheel.sign),
+            None => S::constant(wheel.friction),
+        }
+    }
+
     /// The body whose arc length and speed count for the vehicle's: that of the speed hold, else the first.
     pub fn reference(&self) -> usize {
         self.hold.as_ref().map_or(0, |h| h.body)

@@ -79,10 +79,7 @@ fn wheel_on_rail<S: Scalar>(
     secants: bool,
 ) -> Result<(WheelState<S>, Vec3<S>), Fault> {
     let (sign, spin) = (wheel.sign, x[m.rotors[wheel.rotor].state]);
-    let standing_friction = match &m.adhesion {
-        Some(adhesion) => adhesion.at(x[m.bodies[wheel.body].state], sign),
-        None => S::constant(wheel.friction),
-    };
+    let standing_friction = m.friction(wheel, x);
     // point on the axle line in the tape-circle plane: position and velocity in T
     let centre_B = Vec3::constant(wheel.centre);
     let arm_T = body.R_TB.apply(centre_B);
@@ -236,7 +233,7 @@ fn lag<'a, S: Scalar>(
         slip: slip.map(|w| w / load),
         speed: speed / load,
         length: relaxation_length(length / load),
-        largest: load * (SLIDING * wheel.friction) / stiffness,
+        largest: load * m.friction(wheel, x) * SLIDING / stiffness,
     };
     let rates = if secants { contact.rates_with_secants(m.creep_floor) } else { contact.rates(m.creep_floor) };
     dx[first..first + 2].copy_from_slice(&rates);

@@ -41,7 +41,7 @@ def excitation(drive: Drive, wheel_torque: float, motor_speed: float) -> Excitat
     >>> round(slow.field_current, 2), round(slow.armature_voltage)
     (10.0, 467)
     >>> round(fast.field_current, 2), round(fast.armature_voltage)
-    (4.8, 900)
+    (4.82, 900)
     """
     share, rated = drive.traction_share * drive.armature_voltage_max, drive.field_current_rated
     current = drive.gear_ratio * wheel_torque / (drive.emf_constant * rated)
