@@ -80,12 +80,17 @@ def test_largest_torque_of_eq_5() -> None:
         field_current(DRIVE, 1.001 * limit, POINT.motor_speed)
 
 
-@pytest.mark.parametrize(("speed", "word"), [(0.0, "must be positive"), (25.0, "above the base speed")])
+@pytest.mark.parametrize(("speed", "word"), [(-1.0, "must not be negative"), (25.0, "above the base speed")])
 def test_speeds_without_an_operating_point(speed: float, word: str) -> None:
     with pytest.raises(InputError, match=word):
         operating_point(VEHICLE, speed)
     with pytest.raises(InputError, match="drive"):
         operating_point(library.vehicle("manchester_coach"), 30.0)
+
+
+def test_at_rest_nothing_is_put_out() -> None:
+    point = operating_point(VEHICLE, 0.0)
+    assert (point.armature_voltage, point.wheel_torque, point.field_current_normalised) == (0.0, 0.0, 1.0)
 
 
 def motor_rates(state: np.ndarray, voltage: float, wheel_speed: float) -> tuple[np.ndarray, float]:

@@ -67,7 +67,7 @@ def test_run_saves_a_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     [
         (("speed", "sped"), "did you mean 'speed'?"),
         (("108 km/h", "108 kg"), "is a mass"),
-        (("108 km/h", "0 km/h"), "must be positive"),
+        (("108 km/h", "-1 km/h"), "must not be negative"),
         (("manchester_coach", "manchester"), "manchester_coach"),
         (("200 m", "200 kg"), "track.straight"),
     ],

@@ -121,8 +121,8 @@ def test_runs_from_end_to_end_of_the_track() -> None:
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"speed": 0}, "speed = 0.0: must be positive"),
-        ({"speed": "-3 m/s"}, "speed = -3.0: must be positive"),
+        ({"speed": 0}, "duration: is missing"),
+        ({"speed": "-3 m/s"}, "speed = -3.0: must not be negative"),
         ({"speed": "30 m"}, "speed = '30 m': is a length"),
         ({"friction": -0.1}, "friction = -0.1: must be positive"),
         ({"friction": 35}, "no coefficient of friction"),
