@@ -1,5 +1,5 @@
 //! What is stiff at low speed: creep, between the velocities and spins of every body with wheels (and their stick).
-//! Its exact Jacobian, one block a body, from one pass of the rates with dual numbers.
+//! Its Jacobian, one block a body, from one pass of the rates with dual numbers in which creep forces have secants.
 
 use crate::error::{EngineError, Fault};
 use crate::integrate::Blocks;
