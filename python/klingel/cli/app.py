@@ -74,14 +74,15 @@ def traction(
     ),
     jobs: Annotated[int | None, typer.Option(min=1, help="Runs at a time; default: one per processor.")] = None,
     only: Annotated[
-        list[str] | None, typer.Option(help="Only this part: launch, stop, curve or patch; may be repeated.")
+        list[str] | None,
+        typer.Option(help="Only this part: launch, stop, curve, patch, drives or rig; may be repeated."),
     ] = None,
 ) -> None:
     """Traction, braking and adhesion: launch, stop, curves under torque, patches of low adhesion."""
     from klingel.study import traction as body
-    from klingel.study.traction_cases import GROUPS
+    from klingel.study.traction_cases import PARTS
 
-    body.run(out, jobs=jobs, groups=only or GROUPS)
+    body.run(out, jobs=jobs, parts=only or PARTS)
 
 
 @app.command()

@@ -9,14 +9,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 from rich.console import Console
 
 from klingel import result
+from klingel.assess.header import header_of
 from klingel.assess.traction import PatchFigures, TractionFigures, patch, traction
 from klingel.errors import InputError, SimulationError
 from klingel.study import traction_output as output
 from klingel.study.runner import Batch, run_all
-from klingel.study.traction_cases import GROUPS, STRATEGIES, TractionRun, traction_runs
+from klingel.study.traction_cases import GROUPS, PARTS, STRATEGIES, TractionRun, traction_runs
+from klingel.study.traction_drives import DriveRun, curves_section, drive_runs, rig_section
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -59,7 +62,7 @@ def run(
     out: str | Path,
     *,
     jobs: int | None = None,
-    groups: Iterable[str] = GROUPS,
+    parts: Iterable[str] = PARTS,
     strategies: Iterable[str] = STRATEGIES,
     console: Console | None = None,
 ) -> TractionStudy:
@@ -71,7 +74,8 @@ def run(
     Args:
         out: folder to write to; made if missing.
         jobs: runs at a time; one a processor if not given.
-        groups: parts of the study, of `launch`, `stop`, `curve`, `patch`.
+        parts: of the study, of `launch`, `stop`, `curve`, `patch`, `drives` (the five curves with DC and induction
+            motors), `rig` (equations of the drives on the roller rig).
         strategies: of `solid_like`, `irw_like`.
         console: to print on.
 
@@ -85,7 +89,15 @@ def run(
     """
     started = time.perf_counter()
     console = console or output.console()
-    runs = {each.name: each for each in traction_runs(groups, strategies=strategies)}
+    wanted, chosen = list(parts), list(strategies)
+    unknown = [part for part in wanted if part not in PARTS]
+    if unknown:
+        raise InputError.single("parts", unknown, "not in this study", remedy=f"choose from {', '.join(PARTS)}")
+    runs: dict[str, TractionRun | DriveRun] = {
+        each.name: each for each in traction_runs([g for g in GROUPS if g in wanted], strategies=chosen)
+    }
+    if "drives" in wanted:
+        runs |= {each.name: each for each in drive_runs(chosen)}
     folder = Path(out)
     try:
         (folder / "runs").mkdir(parents=True, exist_ok=True)
@@ -93,8 +105,12 @@ def run(
         remedy = "choose another folder"
         raise InputError.single("out", str(out), f"cannot be made a folder ({error.strerror})", remedy=remedy) from None
 
-    def work(name: str, progress: Progress) -> Finished:
+    def work(name: str, progress: Progress) -> Finished | float:
         one = runs[name]
+        if isinstance(one, DriveRun):
+            series = result.simulate(one.scenario(), progress=progress, strict=True)
+            result.save(series, folder / "runs" / f"{name}.nc")
+            return largest_displacement(series)
         series = result.simulate_spec(one.spec(), progress=progress)
         figures = traction(series, name=name, radius=one.scenario.vehicle.geometry.wheel_radius)
         passed = patch(series, *one.patch) if one.patch else None
@@ -103,14 +119,15 @@ def run(
         thinned = series.isel(time=slice(None, None, max(1, round(1.0 / (DRAWN_RATE * interval)))))
         return Finished(one, figures, passed, thinned.copy(deep=True))
 
-    with console.status("contact tables: compiling, some seconds for a new pair"):
-        for one in runs.values():
-            result.prepare(one.scenario)
-            break
-    batch: Batch[Finished] = run_all(list(runs), work, result.progress, jobs=jobs, console=console)
-    done = list(batch.done.values())
+    batch: Batch[Finished | float] = run_all(list(runs), work, result.progress, jobs=jobs, console=console)
+    done = [each for each in batch.done.values() if isinstance(each, Finished)]
+    largest = {name: each for name, each in batch.done.items() if isinstance(each, float)}
+    sections = [curves_section(largest)] if largest else []
+    if "rig" in wanted and not batch.interrupted:
+        with console.status("roller rig: equations of the drives"):
+            sections.append(rig_section())
     table = output.summary(done)
-    output.write(folder, done, table, failed=batch.failed)
+    output.write(folder, done, table, sections, failed=batch.failed)
     study = TractionStudy(folder, table, batch.failed, time.perf_counter() - started)
     output.show(console, table, folder, study.elapsed)
     if batch.interrupted:
@@ -119,3 +136,8 @@ def run(
         listed = "\n".join(f"  {name}: {reason}" for name, reason in batch.failed.items())
         raise SimulationError(f"{len(batch.failed)} of {len(runs)} runs failed, the rest is in {folder}\n{listed}")
     return study
+
+
+def largest_displacement(series: xr.Dataset) -> float:
+    """Of any wheelset in a run [m]."""
+    return max(float(np.abs(series[f"{w.name}.y"]).max()) for w in header_of(series).wheelsets)

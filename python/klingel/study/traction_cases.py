@@ -17,6 +17,9 @@ from klingel.track import Adhesion, Track
 Group = Literal["launch", "stop", "curve", "patch"]
 GROUPS: tuple[Group, ...] = ("launch", "stop", "curve", "patch")
 
+PARTS = (*GROUPS, "drives", "rig")
+"""Of the study: groups of runs under traction, the five curves with both kinds of motor, the roller rig."""
+
 STRATEGIES = ("solid_like", "irw_like")
 """In the order of the tables."""
 

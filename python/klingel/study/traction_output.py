@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.table import Table
 
 import klingel
+from klingel.assess import energy
 from klingel.plot.style import LOOKS, render
 from klingel.plot.traction import patch_figure, run_figure
 from klingel.report.files import write_whole
@@ -87,19 +88,33 @@ def summary(done: Iterable[Finished]) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def write(folder: Path, done: Sequence[Finished], table: pd.DataFrame, *, failed: Mapping[str, str]) -> None:
-    """`summary.csv`, the figures and `report.html`."""
+def write(
+    folder: Path,
+    done: Sequence[Finished],
+    table: pd.DataFrame,
+    beside: Sequence[Section],
+    *,
+    failed: Mapping[str, str],
+) -> None:
+    """`summary.csv`, the figures and `report.html`, with sections beside those of the runs under traction."""
     text = table.to_csv(index=False, float_format="%.6g", lineterminator="\n")
     write_whole(folder / "summary.csv", text.encode())
-    sections = []
+    sections: list[Section] = []
     for group, (title, words) in PARTS.items():
         members = [each for each in done if each.run.group == group]
         if members:
             pictures = tuple(_picture(folder, each) for each in members)
             tables = [Listed("Extremes of each run", _readable(summary(members)))]
+            tables.append(
+                Listed(
+                    "Energy of each run [kWh]; residual: what does not close, over all that was turned over",
+                    _energies(members),
+                )
+            )
             if group == "patch":
                 tables.append(Listed("Passage over the patch", _passages(members)))
             sections.append(Section(title, (words,), tuple(tables), pictures))
+    sections += beside
     if failed:
         rows = pd.DataFrame({"run": list(failed), "reason": list(failed.values())})
         sections.append(Section("Missing runs", (), (Listed("Runs that failed", rows),)))
@@ -139,6 +154,15 @@ def _readable(table: pd.DataFrame) -> pd.DataFrame:
         else:
             shown[heading] = [f"{factor * value:.{digits}f}" for value in column]
     return shown
+
+
+def _energies(members: Sequence[Finished]) -> pd.DataFrame:
+    rows = []
+    for each in members:
+        account = energy(each.series)
+        values = {what: f"{kwh:.3f}" for what, kwh in zip(account.index[:-1], account["energy_kWh"], strict=False)}
+        rows.append({"run": each.run.name.replace("_", " "), **values, "residual": f"{account['share'].iloc[-1]:.1e}"})
+    return pd.DataFrame(rows)
 
 
 def _passages(members: Sequence[Finished]) -> pd.DataFrame:
