@@ -23,7 +23,7 @@ fn steps(bencher: Bencher, implicit_below: f64, stick: bool) {
     case["creep"]["stick"] = json!(stick);
     let mut plant = Plant::new(&case);
     let start = plant.equilibrium();
-    let mut stepper = Stepper::new(&plant.model).expect("a stepper");
+    let mut stepper = Stepper::new(&plant.model, &plant.model.poles).expect("a stepper");
     stepper.choose(&plant.model, &start);
     let (mut x, mut first, mut inputs) = (start.clone(), vec![0.0; start.len()], plant.model.inputs.clone());
     bencher.bench_local(|| {
