@@ -134,7 +134,7 @@ def rig_section() -> Section:
         add(
             f"plants{3.6 * speed:.0f}",
             figures.departure(away, title=f"Design plants against the whole vehicle, {3.6 * speed:.0f} km/h"),
-            "Eq. (26) drops yaw and lateral motion of the wheelset. With wd kept at nil the pair is a solid wheelset: its "
+            "Eq. (26) drops yaw and lateral motion of the wheelset. With wd at nil the pair is a solid wheelset; its "
             "hardly damped kinematic oscillation is a zero of wd/u on the whole vehicle, at 3 to 8 Hz.",
         )
     listed = Listed(
