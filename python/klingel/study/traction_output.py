@@ -149,10 +149,10 @@ def _readable(table: pd.DataFrame) -> pd.DataFrame:
     shown = pd.DataFrame({"run": table["run"].str.replace("_", " ")})
     for name, (heading, factor, digits) in HEADINGS.items():
         column = table[name]
-        if column.dtype == object:
-            shown[heading] = [str(value) or "no" for value in column]
-        else:
+        if pd.api.types.is_numeric_dtype(column):
             shown[heading] = [f"{factor * value:.{digits}f}" for value in column]
+        else:
+            shown[heading] = [str(value) or "no" for value in column]
     return shown
 
 
