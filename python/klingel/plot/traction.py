@@ -66,14 +66,12 @@ def run_figure(result: xr.Dataset, *, title: str, drive: Drive) -> Figure:
         )
         steering = np.max([np.abs(of(f"{s}.steering_voltage")) for s in sets], axis=0)
         headroom = np.min([most - np.abs(pair("armature_voltage", s)) for s in sets], axis=0)
-        voltage.axhline(most, color=INK, lw=0.8)
-        voltage.axhline(traction_share * most, color=INK, lw=0.8, ls=(0, (4, 3)))
+        voltage.axhline(most, color=INK, lw=0.8, label="VaMax")
+        voltage.axhline(traction_share * most, color=INK, lw=0.8, ls=(0, (4, 3)), label="x VaMax")
         voltage.plot(time, np.abs(mean), color=LINES[0][0], label="|mean|, first wheelset")
         voltage.plot(time, largest, color=LINES[3][0], ls=LINES[3][1], lw=1.0, label="largest of all motors")
         voltage.plot(time, headroom, color=LINES[2][0], ls=LINES[2][1], label="left for steering")
         voltage.plot(time, steering, color=LINES[1][0], ls=LINES[1][1], label="used by steering")
-        voltage.annotate("VaMax", (time[-1], most), fontsize=7.5, ha="right", va="bottom")
-        voltage.annotate("x VaMax", (time[-1], traction_share * most), fontsize=7.5, ha="right", va="top")
         voltage.set_ylabel("armature\nvoltage [V]")
         for quantity, (color, line) in zip(("armature_current", "field_current"), LINES, strict=False):
             share = 100.0 * pair(quantity, first) / rated[quantity]
