@@ -130,7 +130,7 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("options", "first", "last"),
     [
-        (["--vehicle", "mechatronic_irw", "--control", "irw_like"], 30.0, 80.0),
+        (["--vehicle", "mechatronic_irw", "--control", "irw_like"], 15.0, 80.0),
         (["--vehicle", "manchester_coach"], 15.0, 80.0),
         (["--vehicle", "manchester_coach", "--speed", "40 m/s", "--parameter", "friction"], 0.175, 0.7),
         (["--vehicle", "manchester_coach", "--speed", "40 m/s", "--parameter", "friction", "--to", "0.3"], 0.175, 0.3),

@@ -40,6 +40,7 @@ ODD = {
 } | {
     "steering_voltage",
     "steering_moment_command",
+    "steering_feedback",
 }
 """What changes its sign in the mirror; left and right change places."""
 

@@ -39,6 +39,12 @@ impl<S: Scalar> Pass<S> {
         }
     }
 
+    /// Whether limits of the controllers' integrals count.
+    pub fn limited(mut self, limited: bool) -> Self {
+        self.memory.iter_mut().for_each(|memory| memory.limited = limited);
+        self
+    }
+
     /// Rates and channels, and the controllers where constant measurements would lead them.
     ///
     /// # Errors

@@ -53,46 +53,29 @@ struct Problem<'a> {
     /// Share of the held speed.
     speed_share: f64,
     free: Vec<usize>,
+    /// Whether limits of integrals count.
+    limited: bool,
 }
 
-/// The steady state at `m.speed` of the plant with its controllers.
+/// The steady state at `m.speed` of the plant with its controllers: first as if their integrals had no limits, which on
+/// the way there may stand in it, then with them if any is met.
 ///
 /// # Errors
 /// `EngineError::Equilibrium` when Newton's method does not converge.
 pub fn steady(m: &Model, wiring: Option<&Wiring>, start: Option<&Steady>) -> Result<Steady, EngineError> {
     let mut problem = Problem::new(m, wiring);
-    if let Some(Ok(found)) = start.map(|near| problem.newton(problem.neighbour(near))) {
-        return Ok(found);
+    if wiring.is_none() {
+        return problem.solve(start);
     }
-    let curved = matches!(m.track, Course::Uniform(t) if t.curvature != 0.0 || t.cant != 0.0);
-    let mut state = problem.guess();
-    if !curved {
-        let undamped = || problem.iterated(state.clone(), false);
-        return problem.newton(state.clone()).or_else(|_| undamped()).or_else(|_| problem.settled(state));
+    problem.limited = false;
+    let found = problem.solve(start).ok();
+    let within = found.as_ref().is_some_and(|at| problem.within_limits(at));
+    problem.limited = true;
+    match found {
+        Some(at) if within => Ok(at),
+        Some(at) => problem.newton(at).or_else(|_| Problem::new(m, wiring).solve(start)),
+        None => Problem::new(m, wiring).solve(start),
     }
-    problem.share = 0.0;
-    state = problem.newton(state)?;
-    let mut step = ENTRY[0];
-    while problem.share < 1.0 {
-        let before = problem.share;
-        problem.share = (before + step).min(1.0);
-        match problem.newton(state.clone()) {
-            Ok(found) => {
-                state = found;
-                step *= 2.0;
-            }
-            Err(_) if 0.5 * step < ENTRY[1] => {
-                // the branch turns back: let the motion find the next one
-                problem.share = 1.0;
-                return problem.settled(state.clone()).or_else(|_| problem.detour(state));
-            }
-            Err(_) => {
-                problem.share = before;
-                step *= 0.5;
-            }
-        }
-    }
-    Ok(state)
 }
 
 impl<'a> Problem<'a> {
@@ -103,7 +86,53 @@ impl<'a> Problem<'a> {
         let kept: Vec<usize> = m.bodies.iter().flat_map(|b| b.kept().flatten()).collect();
         let given = |i: &usize| *i == s_ref || (m.hold.is_none() && *i == v_ref) || kept.contains(i);
         let free = (0..m.state_count()).filter(|i| !given(i)).collect();
-        Self { m, wiring, share: 1.0, speed_share: 1.0, free }
+        Self { m, wiring, share: 1.0, speed_share: 1.0, free, limited: true }
+    }
+
+    /// From a neighbour, or from the design position, in a curve by way of flatter ones.
+    fn solve(&mut self, start: Option<&Steady>) -> Result<Steady, EngineError> {
+        let m = self.m;
+        if let Some(Ok(found)) = start.map(|near| self.newton(self.neighbour(near))) {
+            return Ok(found);
+        }
+        let curved = matches!(m.track, Course::Uniform(t) if t.curvature != 0.0 || t.cant != 0.0);
+        let mut state = self.guess();
+        if !curved {
+            let undamped = || self.iterated(state.clone(), false);
+            return self.newton(state.clone()).or_else(|_| undamped()).or_else(|_| self.settled(state));
+        }
+        self.share = 0.0;
+        state = self.newton(state)?;
+        let mut step = ENTRY[0];
+        while self.share < 1.0 {
+            let before = self.share;
+            self.share = (before + step).min(1.0);
+            match self.newton(state.clone()) {
+                Ok(found) => {
+                    state = found;
+                    step *= 2.0;
+                }
+                Err(_) if 0.5 * step < ENTRY[1] => {
+                    // the branch turns back: let the motion find the next one
+                    self.share = 1.0;
+                    return self.settled(state.clone()).or_else(|_| self.detour(state));
+                }
+                Err(_) => {
+                    self.share = before;
+                    step *= 0.5;
+                }
+            }
+        }
+        Ok(state)
+    }
+
+    /// Whether no integral has met its limits: then they change nothing.
+    fn within_limits(&self, at: &Steady) -> bool {
+        let residual = |limited: bool| {
+            let mut pass = Pass::<f64>::new(self.m, self.wiring).limited(limited);
+            self.plain(at, &mut pass).ok()
+        };
+        residual(true).is_some_and(|with| residual(false).is_some_and(|without| with == without))
     }
 
     /// By way of the motion.
@@ -162,7 +191,7 @@ impl<'a> Problem<'a> {
     fn iterated(&self, mut at: Steady, damped: bool) -> Result<Steady, EngineError> {
         let n = self.free.len() + self.driven().len() + at.integrals.len();
         let mut jacobian = DMatrix::zeros(n, n);
-        let mut plain = Pass::<f64>::new(self.m, self.wiring);
+        let mut plain = Pass::<f64>::new(self.m, self.wiring).limited(self.limited);
         let (mut worst, mut before) = ((f64::INFINITY, 0), f64::INFINITY);
         for iteration in 0..MAX_ITERATIONS {
             let fail = |worst| self.failed(iteration, worst);
@@ -320,7 +349,7 @@ impl<'a> Problem<'a> {
     fn linearised(&self, at: &Steady, jacobian: &mut DMatrix<f64>) -> Result<DVector<f64>, Fault> {
         let n = jacobian.nrows();
         let (m, commands) = (self.m, self.driven().len());
-        let mut pass = Pass::<Dual<DIRECTIONS>>::new(m, self.wiring);
+        let mut pass = Pass::<Dual<DIRECTIONS>>::new(m, self.wiring).limited(self.limited);
         let mut residual = vec![Dual::default(); n];
         for first in (0..n).step_by(DIRECTIONS) {
             let seed = |value: f64, place: usize| Dual {

@@ -3,7 +3,6 @@ The torque holds the vehicle against its running resistance on straight level tr
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -66,7 +65,7 @@ def operating_point(vehicle: Vehicle, speed: float, *, resistance: Resistance | 
         armature_current=made.armature_current,
         torque_constant=torque_constant(drive, made.field_current),
         armature_voltage=made.armature_voltage,
-        wheel_torque_max=wheel_torque_max(drive, demand.motor_speed) if demand.motor_speed > 0.0 else math.inf,
+        wheel_torque_max=wheel_torque_max(drive, demand.motor_speed),
     )
 
 

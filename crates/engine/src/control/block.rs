@@ -39,15 +39,19 @@ impl Pi {
         self.upper.map_or(y, |u| y.min(u.value(signals)))
     }
 
-    /// The output with this integral while the error stays.
-    fn settled<S: Scalar>(&self, memory: &mut [S], signals: &[S], integral: S) -> S {
+    /// The output with this integral while the error stays, within its limits if they are to count.
+    fn settled<S: Scalar>(&self, memory: &mut [S], signals: &[S], integral: S, limited: bool) -> S {
         (memory[0], memory[1]) = (integral, signals[self.input]);
-        self.limit(self.proportional.value(signals) * memory[1] + integral, signals)
+        let wanted = self.proportional.value(signals) * memory[1] + integral;
+        if limited { self.limit(wanted, signals) } else { wanted }
     }
 
     /// What is nil in a steady state: the error, or at a limit what the integral would carry the output beyond it.
-    pub fn unsettled<S: Scalar>(&self, integral: S, signals: &[S]) -> S {
+    pub fn unsettled<S: Scalar>(&self, integral: S, signals: &[S], limited: bool) -> S {
         let error = signals[self.input];
+        if !limited {
+            return error;
+        }
         let wanted = self.proportional.value(signals) * error + integral;
         let excess = wanted - self.limit(wanted, signals);
         let pushing = S::zero().lt(excess * self.rate.value(signals) * error);
@@ -110,13 +114,15 @@ impl Block {
         if let Self::StateSpace { inputs, filter } = self { inputs.len() + filter.states() } else { 0 }
     }
 
-    /// Goes to the steady state for constant inputs, a PI with the integral given, and returns the output there.
+    /// Goes to the steady state for constant inputs, a PI with the integral given, within limits or without, and returns
+    /// the output there.
     pub fn reset<S: Scalar>(
         &self,
         memory: &mut [S],
         scratch: &mut [S],
         signals: &[S],
         integral: S,
+        limited: bool,
     ) -> Result<S, Outside> {
         Ok(match self {
             Self::Filter { input, filter } => filter.reset(memory, signals[*input]),
@@ -124,7 +130,7 @@ impl Block {
                 gather(scratch, inputs, signals);
                 filter.reset(memory, &scratch[..inputs.len()])
             }
-            Self::Pi(pi) => pi.settled(memory, signals, integral),
+            Self::Pi(pi) => pi.settled(memory, signals, integral, limited),
             Self::RateLimit { input, .. } | Self::Delay { input, .. } => {
                 memory.fill(signals[*input]);
                 signals[*input]
@@ -214,7 +220,7 @@ mod tests {
             Self(block, memory)
         }
         fn reset(&mut self, signals: &[f64]) -> f64 {
-            self.0.reset(&mut self.1, &mut [], signals, 0.0).unwrap()
+            self.0.reset(&mut self.1, &mut [], signals, 0.0, true).unwrap()
         }
         fn step(&mut self, signals: &[f64]) -> f64 {
             self.0.step(&mut self.1, &mut [], signals, Instant { time: 0.0, interval: TS }).unwrap()
@@ -290,10 +296,11 @@ mod tests {
     #[test]
     fn a_settled_pi_has_no_error_or_stands_at_its_limit() {
         let Kept(Block::Pi(pi), _) = pi(-3.0, 3.0) else { unreachable!() };
-        assert_eq!(pi.unsettled(1.5, &[0.0]), 0.0);
-        assert_eq!(pi.unsettled(1.0, &[0.25]), 0.25);
-        assert_eq!(pi.unsettled(2.0, &[1.0]), 1.0);
-        assert_eq!(pi.unsettled(4.0, &[-0.25]), -0.25);
+        assert_eq!(pi.unsettled(1.5, &[0.0], true), 0.0);
+        assert_eq!(pi.unsettled(1.0, &[0.25], true), 0.25);
+        assert_eq!(pi.unsettled(2.0, &[1.0], true), 1.0);
+        assert_eq!(pi.unsettled(4.0, &[-0.25], true), -0.25);
+        assert_eq!(pi.unsettled(9.0, &[0.25], false), 0.25);
     }
 
     #[test]

@@ -31,6 +31,8 @@ struct Placed {
 #[derive(Clone, Debug)]
 pub struct Memory<S> {
     pub states: Vec<S>,
+    /// Whether limits of integrals count in `settle`; on the way to a steady state they may stand in it.
+    pub limited: bool,
     /// Taken since the start of the run.
     samples: i64,
     signals: Vec<S>,
@@ -73,6 +75,7 @@ impl Diagram {
         let scratch = self.blocks.iter().map(|b| b.block.scratch()).max().unwrap_or(0);
         Memory {
             states: vec![S::zero(); states],
+            limited: true,
             samples: 0,
             signals: vec![S::zero(); self.measurement_names.len() + self.blocks.len()],
             scratch: vec![S::zero(); scratch],
@@ -105,10 +108,10 @@ impl Diagram {
         integrals: &[S],
     ) -> Result<(), ControlError> {
         memory.samples = 0;
-        let mut integrals = integrals.iter();
+        let (mut integrals, limited) = (integrals.iter(), memory.limited);
         self.sweep(memory, measurements, |block, states, scratch, signals| {
             let integral = if matches!(block, Block::Pi(_)) { integrals.next().copied() } else { None };
-            block.reset(states, scratch, signals, integral.unwrap_or_default())
+            block.reset(states, scratch, signals, integral.unwrap_or_default(), limited)
         })
     }
 
@@ -168,7 +171,7 @@ impl Diagram {
 
     /// What each PI lacks to a steady state after `settle` with these integrals; nil in one.
     pub fn unsettled<S: Scalar>(&self, memory: &Memory<S>, integrals: &[S]) -> impl Iterator<Item = S> {
-        self.pis().zip(integrals).map(|(pi, &integral)| pi.unsettled(integral, &memory.signals))
+        self.pis().zip(integrals).map(|(pi, &integral)| pi.unsettled(integral, &memory.signals, memory.limited))
     }
 
     /// Blocks whose signal is within `near` of a limit or corner, as a part of their range.
