@@ -49,8 +49,8 @@ class IRWLike:
     slow_speed: running speed below which the loop's gain stays [m/s], and its crossover falls with the square of the
         speed: the gain also damps the wheelset's yaw, by K lambda/r0, which the actuators' lag bears so far.
     integral_time: Ti of the steering loop [s], ten times the loop's own time so that it costs little phase.
-    integral_reach: displacement up to which the integral acts [m]. Beyond it, near the flange, adhesion cannot carry
-        the lateral force, and an integral would only grow: there it is emptied.
+    reach: displacement that the loop heeds [m]: more of it counts as this, and empties the integral. Near the flange
+        the speed difference tells more than there is, and where adhesion is lost an integral would only grow.
     integral_share: of the largest moment of the actuators that the integral may use: three times what it takes at
         friction 0.25; more would only wind up.
     current_frequency: crossover of the differential current loop of DC motors [Hz]: above all motion of the wheelset,
@@ -77,7 +77,7 @@ class IRWLike:
     frequency: float = 1.6
     slow_speed: float = 24.0
     integral_time: float = 1.0
-    integral_reach: float = 4e-3
+    reach: float = 4e-3
     integral_share: float = 0.1
     current_frequency: float = 30.0
     yaw_frequency: float = 1.5
@@ -93,7 +93,7 @@ class IRWLike:
         if self.curvature not in get_args(Curvature):
             remedy = nearest(self.curvature, get_args(Curvature))
             raise InputError.single("control.curvature", self.curvature, "is not known", remedy=remedy)
-        loops = ("frequency", "slow_speed", "integral_time", "integral_reach", "integral_share", "current_frequency")
+        loops = ("frequency", "slow_speed", "integral_time", "reach", "integral_share", "current_frequency")
         sensors = ("yaw_frequency", "gyro_frequency", "extrapolation", "roll_frequency", "sensor_frequency")
         check_positive(self, (*loops, *sensors))
 
@@ -133,7 +133,10 @@ class IRWLike:
         command_motors(d, motors, w.name, motors.equal_torques(d, w.name, frequency=self.current_frequency))
 
     def _speed_error(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
-        """lambda r/r0 - wd [rad/s], r the yaw rate of the wheelset or of the track: -V gamma y/r0^2."""
+        """lambda r/r0 - wd [rad/s], r the yaw rate of the wheelset or of the track: -V gamma y/r0^2 up to the reach.
+
+        Near the flange the wheels' radii differ by far more than conicity says: a loop that heeded it all would swing.
+        """
         wd = speed_difference(d, w, self.timing)
         if self.curvature == "gyro":
             gyro = d.delay(f"{w.name}.gyro", d.measure(f"{w.name}.yaw_rate"), self.timing.sensor_samples)
@@ -142,7 +145,11 @@ class IRWLike:
         else:
             here = database_curvature(d, f"{w.name}.rho.here", track, d.measure(f"{w.name}.s"))
             rate = d.product(f"{w.name}.turn", here, d.measure(SPEED))
-        d.sum(f"{w.name}.wd.error", {rate: plant.speed_ratio, wd: -1.0})
+        told = d.sum(f"{w.name}.wd.told", {rate: plant.speed_ratio, wd: -1.0})
+        per_metre = self.contact.conicity / plant.radius**2
+        most = scheduled(d, "wd.error.most", lambda v: per_metre * v * self.reach)
+        least = "wd.error.least" if d.has("wd.error.least") else d.sum("wd.error.least", {most: -1.0})
+        d.saturation(f"{w.name}.wd.error", told, least, most)
 
     def _steering_loop(
         self, d: Diagram, plant: Plant, w: Wheelset, track: Track, proportional: str, integral: str
@@ -168,8 +175,8 @@ class IRWLike:
     def _within_reach(self, d: Diagram, plant: Plant, w: Wheelset) -> str:
         """1 while the displacement that the error tells, e r0^2/(V gamma), is one to be removed; 0 near the flange."""
         per_error = scheduled(d, f"{w.name}.y.gain", lambda v: -(plant.radius**2) / (self.contact.conicity * v))
-        y = d.product(f"{w.name}.y.told", f"{w.name}.wd.error", per_error)
-        full, out = self.integral_reach, self.integral_reach + REACH_ROUNDED
+        y = d.product(f"{w.name}.y.told", f"{w.name}.wd.told", per_error)
+        full, out = self.reach, self.reach + REACH_ROUNDED
         share = d.lookup(f"{w.name}.within_reach", y, (-out, -full, full, out), (0.0, 1.0, 1.0, 0.0))
         d.probe(f"{w.name}.within_reach", "1", share)
         return share
