@@ -35,6 +35,12 @@ if TYPE_CHECKING:
 
 Curvature = Literal["gyro", "database"]
 
+FAR = 50e-3
+"""Displacement beyond the reach up to which more of it still counts a little [m]; no wheelset goes so far."""
+
+BEYOND_REACH = 0.1
+"""Share of what is beyond the reach that counts."""
+
 REACH_ROUNDED = 1e-3
 """Over which the limit of the steering loop's integral falls to nil beyond its reach [m]."""
 
@@ -49,7 +55,7 @@ class IRWLike:
     slow_speed: running speed below which the loop's gain stays [m/s], and its crossover falls with the square of the
         speed: the gain also damps the wheelset's yaw, by K lambda/r0, which the actuators' lag bears so far.
     integral_time: Ti of the steering loop [s], ten times the loop's own time so that it costs little phase.
-    reach: displacement that the loop heeds [m]: more of it counts as this, and empties the integral. Near the flange
+    reach: displacement that the loop heeds [m]: more of it counts a tenth, and empties the integral. Near the flange
         the speed difference tells more than there is, and where adhesion is lost an integral would only grow.
     integral_share: of the largest moment of the actuators that the integral may use: three times what it takes at
         friction 0.25; more would only wind up.
@@ -146,10 +152,13 @@ class IRWLike:
             here = database_curvature(d, f"{w.name}.rho.here", track, d.measure(f"{w.name}.s"))
             rate = d.product(f"{w.name}.turn", here, d.measure(SPEED))
         told = d.sum(f"{w.name}.wd.told", {rate: plant.speed_ratio, wd: -1.0})
-        per_metre = self.contact.conicity / plant.radius**2
-        most = scheduled(d, "wd.error.most", lambda v: per_metre * v * self.reach)
-        least = "wd.error.least" if d.has("wd.error.least") else d.sum("wd.error.least", {most: -1.0})
-        d.saturation(f"{w.name}.wd.error", told, least, most)
+        per_metre = -self.contact.conicity / plant.radius**2
+        y = d.product(f"{w.name}.y.told", told, scheduled(d, "y.per_error", lambda v: 1.0 / (per_metre * v)))
+        far, beyond = self.reach + FAR, self.reach + BEYOND_REACH * FAR
+        heeded = d.lookup(
+            f"{w.name}.y.heeded", y, (-far, -self.reach, self.reach, far), (-beyond, -self.reach, self.reach, beyond)
+        )
+        d.product(f"{w.name}.wd.error", heeded, scheduled(d, "error.per_y", lambda v: per_metre * v))
 
     def _steering_loop(
         self, d: Diagram, plant: Plant, w: Wheelset, track: Track, proportional: str, integral: str
@@ -161,7 +170,7 @@ class IRWLike:
         else:
             rho, roll_rate = database_curve(d, plant, w, track, self.timing)
         error, limit = f"{w.name}.wd.error", 0.5 * plant.moment_max
-        reach = d.sum(f"{w.name}.M.reach", {self._within_reach(d, plant, w): self.integral_share * plant.moment_max})
+        reach = d.sum(f"{w.name}.M.reach", {self._within_reach(d, w): self.integral_share * plant.moment_max})
         held = d.pi(f"{w.name}.M.integral", error, proportional=0.0, integral=integral, limit=reach)
         both = d.sum(f"{w.name}.M.unlimited", {error: proportional, held: 1.0})
         feedback = d.saturation(f"{w.name}.M.feedback", both, -limit, limit)
@@ -172,11 +181,9 @@ class IRWLike:
         )
         command_steering(d, plant, w, d.sum(f"{w.name}.M", {feedforward: 1.0, feedback: 1.0}), self.timing)
 
-    def _within_reach(self, d: Diagram, plant: Plant, w: Wheelset) -> str:
+    def _within_reach(self, d: Diagram, w: Wheelset) -> str:
         """1 while the displacement that the error tells, e r0^2/(V gamma), is one to be removed; 0 near the flange."""
-        per_error = scheduled(d, f"{w.name}.y.gain", lambda v: -(plant.radius**2) / (self.contact.conicity * v))
-        y = d.product(f"{w.name}.y.told", f"{w.name}.wd.told", per_error)
         full, out = self.reach, self.reach + REACH_ROUNDED
-        share = d.lookup(f"{w.name}.within_reach", y, (-out, -full, full, out), (0.0, 1.0, 1.0, 0.0))
+        share = d.lookup(f"{w.name}.within_reach", f"{w.name}.y.told", (-out, -full, full, out), (0.0, 1.0, 1.0, 0.0))
         d.probe(f"{w.name}.within_reach", "1", share)
         return share
