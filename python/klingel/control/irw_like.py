@@ -42,7 +42,7 @@ BEYOND_REACH = 0.1
 """Share of what is beyond the reach that counts."""
 
 REACH_ROUNDED = 1e-3
-"""Over which the limit of the steering loop's integral falls to nil beyond its reach [m]."""
+"""Over which `within_reach` falls from 1 to 0 beyond the reach [m]."""
 
 
 @dataclass(frozen=True)
@@ -55,10 +55,10 @@ class IRWLike:
     slow_speed: running speed below which the loop's gain stays [m/s], and its crossover falls with the square of the
         speed: the gain also damps the wheelset's yaw, by K lambda/r0, which the actuators' lag bears so far.
     integral_time: Ti of the steering loop [s], ten times the loop's own time so that it costs little phase.
-    reach: displacement that the loop heeds [m]: more of it counts a tenth, and empties the integral. Near the flange
-        the speed difference tells more than there is, and where adhesion is lost an integral would only grow.
+    reach: displacement that the loop heeds [m]: what is beyond counts a tenth, as near the flange the speed difference
+        tells more than there is; `within_reach` in the results says where (1) and where not (0).
     integral_share: of the largest moment of the actuators that the integral may use: three times what it takes at
-        friction 0.25; more would only wind up.
+        friction 0.25; more would only wind up where adhesion is lost.
     current_frequency: crossover of the differential current loop of DC motors [Hz]: above all motion of the wheelset,
         below what a delay of two samples bears.
     yaw_frequency: low-pass of the wheelset's yaw rate [Hz]. Above it lambda psi'/r0 stays in the speed difference, as
@@ -159,6 +159,9 @@ class IRWLike:
             f"{w.name}.y.heeded", y, (-far, -self.reach, self.reach, far), (-beyond, -self.reach, self.reach, beyond)
         )
         d.product(f"{w.name}.wd.error", heeded, scheduled(d, "error.per_y", lambda v: per_metre * v))
+        out = self.reach + REACH_ROUNDED
+        within = d.lookup(f"{w.name}.within_reach", y, (-out, -self.reach, self.reach, out), (0.0, 1.0, 1.0, 0.0))
+        d.probe(f"{w.name}.within_reach", "1", within)
 
     def _steering_loop(
         self, d: Diagram, plant: Plant, w: Wheelset, track: Track, proportional: str, integral: str
@@ -170,8 +173,8 @@ class IRWLike:
         else:
             rho, roll_rate = database_curve(d, plant, w, track, self.timing)
         error, limit = f"{w.name}.wd.error", 0.5 * plant.moment_max
-        reach = d.sum(f"{w.name}.M.reach", {self._within_reach(d, w): self.integral_share * plant.moment_max})
-        held = d.pi(f"{w.name}.M.integral", error, proportional=0.0, integral=integral, limit=reach)
+        bound = self.integral_share * plant.moment_max
+        held = d.pi(f"{w.name}.M.integral", error, proportional=0.0, integral=integral, limit=bound)
         both = d.sum(f"{w.name}.M.unlimited", {error: proportional, held: 1.0})
         feedback = d.saturation(f"{w.name}.M.feedback", both, -limit, limit)
         d.probe(f"{w.name}.steering_feedback", "N m", feedback)
@@ -180,10 +183,3 @@ class IRWLike:
             d, plant, self.contact, w, rho=rho, roll_rate=roll_rate, gyroscopic=gyroscopic
         )
         command_steering(d, plant, w, d.sum(f"{w.name}.M", {feedforward: 1.0, feedback: 1.0}), self.timing)
-
-    def _within_reach(self, d: Diagram, w: Wheelset) -> str:
-        """1 while the displacement that the error tells, e r0^2/(V gamma), is one to be removed; 0 near the flange."""
-        full, out = self.reach, self.reach + REACH_ROUNDED
-        share = d.lookup(f"{w.name}.within_reach", f"{w.name}.y.told", (-out, -full, full, out), (0.0, 1.0, 1.0, 0.0))
-        d.probe(f"{w.name}.within_reach", "1", share)
-        return share

@@ -104,7 +104,7 @@ def write(
         members = [each for each in done if each.run.group == group]
         if members:
             pictures = tuple(_picture(folder, each) for each in members)
-            tables = [Listed("Extremes of each run", _readable(summary(members)))]
+            tables = [Listed("Extremes of each run", _upright(_readable(summary(members))))]
             tables.append(
                 Listed(
                     "Energy of each run [kWh]; residual: what does not close, over all that was turned over",
@@ -112,7 +112,7 @@ def write(
                 )
             )
             if group == "patch":
-                tables.append(Listed("Passage over the patch", _passages(members)))
+                tables.append(Listed("Passage over the patch", _upright(_passages(members))))
             sections.append(Section(title, (words,), tuple(tables), pictures))
     sections += beside
     if failed:
@@ -156,11 +156,17 @@ def _readable(table: pd.DataFrame) -> pd.DataFrame:
     return shown
 
 
+def _upright(table: pd.DataFrame) -> pd.DataFrame:
+    """Runs as columns, which are fewer than what is told of each."""
+    return table.set_index("run").T.rename_axis("", axis="index").reset_index()
+
+
 def _energies(members: Sequence[Finished]) -> pd.DataFrame:
     rows = []
     for each in members:
         account = energy(each.series)
-        values = {what: f"{kwh:.3f}" for what, kwh in zip(account.index[:-1], account["energy_kWh"], strict=False)}
+        named = zip(account.index[:-1], account["energy_kWh"], strict=False)
+        values = {str(what).replace("_", " "): f"{kwh:.3f}" for what, kwh in named}
         rows.append({"run": each.run.name.replace("_", " "), **values, "residual": f"{account['share'].iloc[-1]:.1e}"})
     return pd.DataFrame(rows)
 
