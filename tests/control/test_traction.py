@@ -76,6 +76,27 @@ def test_slip_control_on_a_patch(strategy: type, notch: float) -> None:
     assert found.growth < 1.0
 
 
+def test_a_braking_notch_stops_and_does_not_drive_backwards() -> None:
+    result = run(Traction.notched([0.0, 0.5, 12.0], [0.0, -1.0, -1.0]), 3.0)
+    assert abs(float(result["body.speed"][-1])) < 0.1
+    assert float(result["body.speed"].min()) > -0.1
+
+
+def test_slip_control_can_be_left_out() -> None:
+    assert Traction.notched([0.0], [1.0], slip=None).slip is None
+    assert Traction.follow(["0 s", "1 min"], [1.0, 2.0]).time == (0.0, 60.0)
+
+
+@pytest.mark.parametrize("slip", [None, SlipControl()])
+@pytest.mark.parametrize("drive", ["dc", "induction"])
+def test_vehicles_with_traction_loops_linearise_and_are_stable(slip: SlipControl | None, drive: str) -> None:
+    vehicle = VEHICLE if drive == "dc" else VEHICLE.replace(drive=kl.library.drive("induction_160kw"))
+    control = IRWLike(traction=Traction.follow([0.0, 9.0], [40.0, 40.0], slip=slip))
+    model = kl.linearise(kl.Scenario(vehicle, kl.Track.straight("1 km"), speed=40.0, control=control))
+    found = eigenvalues(model)
+    assert found[np.isfinite(found)].real.max() < 1e-3
+
+
 def test_without_slip_control_wheels_spin() -> None:
     leaves = Adhesion(patches=[(50.0, 130.0, 0.05)], transition=5.0)
     wild = Traction((0.0, 0.5, 5.0), notch=(0.0, 1.0, 1.0), slip=None)

@@ -24,6 +24,9 @@ GROWTH_WINDOW = 0.25
 STEADY_SPREAD = 5e-4
 """Creepage that swings by less has no oscillation to speak of [-]."""
 
+CENTRED = 1e-3
+"""A wheelset nearer to the middle runs centred [m]."""
+
 GRIPS = 0.005
 """A wheel with less creepage grips [-]."""
 
@@ -149,11 +152,13 @@ class PatchFigures:
             with more than 0.5 % creepage, the longest.
         growth: largest ratio of the swing of creepage (its standard deviation about a straight line) in the last
             quarter of a wheel's time in the patch over that in the second quarter: above one something grows.
+        centred_s: how long after it left the patch a wheelset was last more than 1 mm off the middle, the longest.
     """
 
     creepage_max: float
     recovery_s: float
     growth: float
+    centred_s: float
 
 
 def patch(result: xr.Dataset, begin: float, end: float) -> PatchFigures:
@@ -173,7 +178,7 @@ def patch(result: xr.Dataset, begin: float, end: float) -> PatchFigures:
     header = header_of(result)
     time = np.asarray(result["time"].values, dtype=np.float64)
     interval = float(time[1] - time[0])
-    creepages, recoveries, growths = [0.0], [0.0], [0.0]
+    creepages, recoveries, growths, centred = [0.0], [0.0], [0.0], [0.0]
     asked = values(result, "traction.torque_asked")
     for wheelset in header.wheelsets:
         s = values(result, f"{wheelset.name}.s")
@@ -192,7 +197,10 @@ def patch(result: xr.Dataset, begin: float, end: float) -> PatchFigures:
         lacking = after & (slips | (np.abs(given) < 0.9 * np.abs(asked)))
         if lacking.any():
             recoveries.append(float(time[lacking][-1] - time[after][0]))
-    return PatchFigures(max(creepages), max(recoveries), max(growths))
+        off = after & (np.abs(values(result, f"{wheelset.name}.y")) > CENTRED)
+        if off.any():
+            centred.append(float(time[off][-1] - time[after][0]))
+    return PatchFigures(max(creepages), max(recoveries), max(growths), max(centred))
 
 
 def _swing(signal: Signal) -> float:

@@ -12,14 +12,11 @@ from klingel.control.basics import Timing, scheduled
 from klingel.control.diagram import BEYOND, Diagram
 from klingel.control.motors import DcMotors, InductionMotors, Motors, equal_currents, steering_voltage_max
 from klingel.control.traction import Traction
-from klingel.drives import induction_point, induction_torque_max, operating_point
+from klingel.drives import induction_point, operating_point, steering_torque_max
 from klingel.vehicle import Drive, InductionDrive
 
 if TYPE_CHECKING:
     from klingel.vehicle import Vehicle
-
-STEERING_SHARE = 0.1
-"""Of the torque at standstill that steering may use of induction motors, as the voltage of DC motors leaves it."""
 
 FIELD_MIN = 0.1
 """Least field current over its rated value: enough for speeds far above the vehicle's."""
@@ -51,7 +48,7 @@ def mean_of(d: Diagram, w: str, quantity: str, timing: Timing) -> str:
 
 @dataclass(frozen=True)
 class DrivenDc:
-    """DC motors under a traction loop: docs/theory/traction.md."""
+    """DC motors under a traction loop: docs/theory/traction.md. The rated current bounds the mean of a pair."""
 
     vehicle: Vehicle
     drive: Drive
@@ -156,7 +153,7 @@ class DrivenInduction:
     @property
     def steering_max(self) -> float:
         """A share of the largest torque at standstill [N m]"""
-        return STEERING_SHARE * induction_torque_max(self.drive, 0.0) / self.drive.gear_ratio
+        return steering_torque_max(self.drive)
 
     def mean(self, d: Diagram, w: str) -> str:
         """T + CM wM/N [N m]"""

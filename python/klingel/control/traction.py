@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from klingel.vehicle import Vehicle
 
 WHEELS = 8
+BRAKE_FADES = 2.0
+"""Speed below which the torque of a braking notch falls to nil [m/s]."""
+CREEP_CONTROL = SlipControl()
+"""Unless another is given, or None for none."""
 CORNER = 0.5
 """Over which a corner of the wanted speed is rounded in the acceleration fed forward [s]."""
 DEMAND = "traction.torque"
@@ -77,15 +81,23 @@ class Traction:
             raise InputError.single("control.traction.field_margin", self.field_margin, "is no margin", remedy=remedy)
 
     @classmethod
-    def follow(cls, time: Iterable[float], speed: Iterable[Quantity], *, slip: SlipControl | None = None) -> Traction:
-        """Follow a speed over time: corner points, strings with units or m/s; errors: InputError."""
+    def follow(
+        cls, time: Iterable[Quantity], speed: Iterable[Quantity], *, slip: SlipControl | None = CREEP_CONTROL
+    ) -> Traction:
+        """Follow a speed over time: corner points, strings with units or SI; errors: InputError."""
         speeds = tuple(to_si(value, "m/s", key="control.traction.speed") for value in speed)
-        return cls(tuple(float(t) for t in time), speed=speeds, slip=slip or SlipControl())
+        return cls(_times(time), speed=speeds, slip=slip)
 
     @classmethod
-    def notched(cls, time: Iterable[float], notch: Iterable[float], *, slip: SlipControl | None = None) -> Traction:
-        """A share of the torque that the motors give at the speed: -1 (braking) to 1; errors: InputError."""
-        return cls(tuple(float(t) for t in time), notch=tuple(float(n) for n in notch), slip=slip or SlipControl())
+    def notched(
+        cls, time: Iterable[Quantity], notch: Iterable[Quantity], *, slip: SlipControl | None = CREEP_CONTROL
+    ) -> Traction:
+        """A share of the torque that the motors give at the speed: -1 (braking) to 1; errors: InputError.
+
+        Braking fades below 2 m/s: it stops the vehicle and does not drive it backwards.
+        """
+        shares = tuple(to_si(value, "1", key="control.traction.notch") for value in notch)
+        return cls(_times(time), notch=shares, slip=slip)
 
     def torque(self, d: Diagram, vehicle: Vehicle, w: str, timing: Timing) -> str:
         """The signal of the torque for each wheel of a pair [N m], what slip control takes off included."""
@@ -106,10 +118,12 @@ class Traction:
         least = d.sum("traction.least", {most: -1.0})
         now = d.clock()
         if self.notch is not None:
-            share = d.lookup("traction.notch", now, self.time, self.notch) if len(self.time) > 1 else None
-            asked = (
-                d.product("traction.asked", share, most) if share else d.sum("traction.asked", {most: self.notch[0]})
-            )
+            share = d.lookup("traction.notch", now, *two_at_least(self.time, self.notch))
+            # a brake holds at rest, it does not drive backwards
+            rolling = d.lookup("traction.rolling", d.measure(SPEED), (0.0, BRAKE_FADES), (0.0, 1.0))
+            braking = d.product("traction.braking", d.saturation("traction.brake", share, -1.0, 0.0), rolling)
+            notch = d.sum("traction.share", {d.saturation("traction.drive", share, 0.0, 1.0): 1.0, braking: 1.0})
+            asked = d.product("traction.asked", notch, most)
         else:
             asked = self._following(d, vehicle, now, most, least)
         within = d.saturation("traction.within", asked, least, most)
@@ -136,6 +150,10 @@ class Traction:
             "traction.feedback", error, proportional=gain, integral=gain / self.integral_time, within=(lower, upper)
         )
         return d.sum("traction.asked", {forward: 1.0, back: 1.0})
+
+
+def _times(time: Iterable[Quantity]) -> tuple[float, ...]:
+    return tuple(to_si(value, "s", key="control.traction.time") for value in time)
 
 
 def two_at_least(times: tuple[float, ...], values: tuple[float, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -19,7 +19,7 @@ from klingel.drives.formulas import (
     strahl,
 )
 from klingel.drives.induction import InductionPoint, induction_point, induction_torque_max
-from klingel.drives.limits import starting_point, traction_torque_max
+from klingel.drives.limits import starting_point, steering_torque_max, traction_torque_max
 from klingel.drives.motor import field_current, torque_constant, wheel_torque, wheel_torque_max
 from klingel.drives.operating import OperatingPoint, operating_point, operating_table
 from klingel.drives.resistance import running_resistance
@@ -51,6 +51,7 @@ __all__ = [
     "sauthoff",
     "sncf_general",
     "starting_point",
+    "steering_torque_max",
     "strahl",
     "torque_constant",
     "torque_demand",

@@ -15,8 +15,19 @@ if TYPE_CHECKING:
     from klingel.vehicle import Vehicle
 
 
+STEERING_SHARE = 0.1
+"""Of the torque at standstill that steering may use of induction motors, as the voltage of DC motors leaves it."""
+
+
+def steering_torque_max(drive: InductionDrive) -> float:
+    """What is kept of each induction motor's torque for steering [N m], at the wheel."""
+    return STEERING_SHARE * induction_torque_max(drive, 0.0) / drive.gear_ratio
+
+
 def traction_torque_max(vehicle: Vehicle, speed: float) -> float:
-    """The torque [N m] that the motor of each wheel gives it at most at a speed [m/s], with x VaMax for DC motors.
+    """The torque [N m] that the motor of each wheel gives it at most for traction at a speed [m/s].
+
+    With x VaMax for DC motors; without what steering may use of induction motors.
 
     Error: InputError for a vehicle without drives, or a negative speed.
     """
@@ -25,7 +36,7 @@ def traction_torque_max(vehicle: Vehicle, speed: float) -> float:
         raise InputError.single("drive", None, "is missing", remedy=f"{vehicle.name} is hauled; take a driven vehicle")
     motor_speed = speed / vehicle.geometry.wheel_radius / drive.gear_ratio
     if isinstance(drive, InductionDrive):
-        limit = induction_torque_max(drive, motor_speed) / drive.gear_ratio
+        limit = induction_torque_max(drive, motor_speed) / drive.gear_ratio - steering_torque_max(drive)
     else:
         limit = torque_limit(drive, motor_speed)
     return limit - drive.rotor_damping * motor_speed / drive.gear_ratio

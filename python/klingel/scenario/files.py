@@ -191,6 +191,8 @@ def _parameter(kind: type[Any], name: str, value: object, key: str) -> Any:
     if name not in hints:
         raise InputError.single(place, value, "is not a known key", remedy=nearest(name, list(hints)))
     if name in PARTS:
+        if value is False and name == "slip":
+            return None
         if not isinstance(value, Mapping):
             raise InputError.single(place, value, "is no table", remedy=f"give [{place}]")
         return _made(PARTS[name], value, place)

@@ -177,7 +177,8 @@ def _patches(strategy: str) -> Iterable[TractionRun]:
         traction = Traction.notched([0.0, 2.0, 2.5, duration], [0.0, 0.0, notch, notch])
         scenario = _scenario(strategy, track, speed, traction, adhesion)
         name = f"patch_{word}_{strategy}"
-        yield TractionRun("patch", name, f"{word} over the patch", strategy, scenario, (begin, begin + PATCH))
+        title = f"{word} over the patch"
+        yield TractionRun("patch", name, title, strategy, scenario, (begin, begin + PATCH), offset=OFFSET)
     for radius, (_, high, transition) in CURVES.items():
         first = 150.0 + float(transition.split()[0]) + 100.0
         where = Adhesion(base=FRICTION, patches=[(first, first + PATCH, LOW)], transition=RAMP)

@@ -84,6 +84,7 @@ def summary(done: Iterable[Finished]) -> pd.DataFrame:
         row["patch_creepage_max"] = passed.creepage_max if passed else float("nan")
         row["patch_recovery_s"] = passed.recovery_s if passed else float("nan")
         row["patch_growth"] = passed.growth if passed else float("nan")
+        row["patch_centred_s"] = passed.centred_s if passed else float("nan")
         rows.append(row)
     return pd.DataFrame(rows)
 
@@ -178,7 +179,8 @@ def _passages(members: Sequence[Finished]) -> pd.DataFrame:
             "run": [run.name.replace("_", " ") for run, _ in rows],
             "largest creepage [%]": [f"{100.0 * passed.creepage_max:.2f}" for _, passed in rows],
             "torque back after [s]": [f"{passed.recovery_s:.2f}" for _, passed in rows],
-            "spread, last over second quarter [-]": [f"{passed.growth:.2f}" for _, passed in rows],
+            "swing, last over second quarter [-]": [f"{passed.growth:.2f}" for _, passed in rows],
+            "last 1 mm off the middle after [s]": [f"{passed.centred_s:.2f}" for _, passed in rows],
         }
     )
 

@@ -109,11 +109,11 @@ class Adhesion:
         return places, values
 
 
-def _patch(i: int, given: Patch | Sequence[Quantity]) -> Patch:
+def _patch(i: int, given: object) -> Patch:
     key = f"patches.{i}"
     if isinstance(given, Patch):
-        return given
-    if isinstance(given, str) or len(given) not in (3, 4):
+        given = (given.start, given.end, given.friction, given.rail)
+    if isinstance(given, str) or not isinstance(given, Sequence) or len(given) not in (3, 4):
         raise InputError.single(key, given, "is no patch", remedy="give (start, end, friction) or a Patch")
     rail = given[3] if len(given) == 4 else "both"
     if rail not in get_args(Rail):

@@ -46,16 +46,16 @@ impl Pi {
         if limited { self.limit(wanted, signals) } else { wanted }
     }
 
-    /// What is nil in a steady state: the error, or at a limit what the integral would carry the output beyond it.
+    /// What is nil in a steady state: the error, or at a limit that the error pushes against what the output is beyond it.
+    /// Written as the projection of output + error, it has no jump between the two.
     pub fn unsettled<S: Scalar>(&self, integral: S, signals: &[S], limited: bool) -> S {
         let error = signals[self.input];
         if !limited {
             return error;
         }
         let wanted = self.proportional.value(signals) * error + integral;
-        let excess = wanted - self.limit(wanted, signals);
-        let pushing = S::zero().lt(excess * self.rate.value(signals) * error);
-        S::select(pushing, excess, error)
+        let pushed = wanted + S::select(self.rate.value(signals).lt(S::zero()), -error, error);
+        self.limit(pushed, signals) - wanted
     }
 
     fn step<S: Scalar>(&self, memory: &mut [S], signals: &[S], ts: f64) -> S {
@@ -298,8 +298,9 @@ mod tests {
         let Kept(Block::Pi(pi), _) = pi(-3.0, 3.0) else { unreachable!() };
         assert_eq!(pi.unsettled(1.5, &[0.0], true), 0.0);
         assert_eq!(pi.unsettled(1.0, &[0.25], true), 0.25);
-        assert_eq!(pi.unsettled(2.0, &[1.0], true), 1.0);
-        assert_eq!(pi.unsettled(4.0, &[-0.25], true), -0.25);
+        assert_eq!(pi.unsettled(1.0, &[1.0], true), 0.0);
+        assert_eq!(pi.unsettled(2.0, &[1.0], true), -1.0);
+        assert_eq!(pi.unsettled(4.0, &[-0.25], true), -0.5);
         assert_eq!(pi.unsettled(9.0, &[0.25], false), 0.25);
     }
 
