@@ -13,7 +13,7 @@ from klingel.control.diagram import BEYOND, Diagram, Gain
 if TYPE_CHECKING:
     from klingel.vehicle import Vehicle
 
-GRIP_LOST = (0.12, 0.3)
+GRIP_LOST = (0.2, 0.35)
 """Slip speed over what is allowed at which the coupling of a pair begins to fall, and has."""
 
 FREE_FREQUENCY = 5.0
