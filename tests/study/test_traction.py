@@ -27,7 +27,7 @@ def test_one_part_of_the_study(tmp_path: Path) -> None:
 
 def test_runs_have_their_own_names_and_unknown_parts_are_refused(tmp_path: Path) -> None:
     names = [run.name for run in traction_runs()]
-    assert len(names) == len(set(names)) == 20
+    assert len(names) == len(set(names)) == 24
     with pytest.raises(InputError, match="not in this study"):
         traction.run(tmp_path, parts=["brake"])
 

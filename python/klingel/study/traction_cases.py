@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from klingel import control, library
+from klingel.contact import CreepOptions
 from klingel.control import SlipControl, Traction
 from klingel.errors import InputError
 from klingel.lower import Spec, lower
@@ -35,6 +36,9 @@ OFFSET = 2e-3
 
 PATCH = 200.0
 """Length of the patch [m]."""
+
+FALLING = (0.4, 0.6)
+"""A and B [s/m] of friction that falls with the slip velocity, mu ((1 - A) exp(-B w) + A); this project's choice."""
 
 RAMP = 5.0
 """Over which friction falls and rises at its ends [m]."""
@@ -173,12 +177,14 @@ def _patches(strategy: str) -> Iterable[TractionRun]:
     adhesion = Adhesion(base=FRICTION, patches=[(begin, begin + PATCH, LOW)], transition=RAMP)
     track = Track.straight("900 m")
     for word, speed, notch in (("accelerating", 50.0 / 3.6, 1.0), ("braking", 120.0 / 3.6, -1.0)):
-        duration = 22.0 if notch > 0.0 else 20.0
-        traction = Traction.notched([0.0, 2.0, 2.5, duration], [0.0, 0.0, notch, notch])
+        traction = Traction.notched([0.0, 2.0, 2.5, 22.0 if notch > 0.0 else 20.0], [0.0, 0.0, notch, notch])
         scenario = _scenario(strategy, track, speed, traction, adhesion)
+        place, title = (begin, begin + PATCH), f"{word} over the patch"
         name = f"patch_{word}_{strategy}"
-        title = f"{word} over the patch"
-        yield TractionRun("patch", name, title, strategy, scenario, (begin, begin + PATCH), offset=OFFSET)
+        yield TractionRun("patch", name, title, strategy, scenario, place, offset=OFFSET)
+        falling = scenario.replace(creep_options=CreepOptions(falling=FALLING))
+        name, title = f"patch_falling_{word}_{strategy}", f"{title}, friction falling with slip"
+        yield TractionRun("patch", name, title, strategy, falling, place, offset=OFFSET)
     for radius, (_, high, transition) in CURVES.items():
         first = 150.0 + float(transition.split()[0]) + 100.0
         where = Adhesion(base=FRICTION, patches=[(first, first + PATCH, LOW)], transition=RAMP)

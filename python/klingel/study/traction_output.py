@@ -62,9 +62,11 @@ PARTS = {
     ),
     "patch": (
         "A patch of low adhesion",
-        "200 m with friction 0.08. On straight track slip control keeps the creepage and gives the torque back behind "
-        "the patch. In the curves at 300 mm deficiency friction 0.08 cannot carry the lateral force at small contact "
-        "angles: the wheelsets move to the flange, whatever steers them, and come back behind the patch.",
+        "200 m with friction 0.08. On straight track slip control keeps the creepage and gives the torque back "
+        "behind the patch, also where friction falls with slip; there the wheel speeds of I tell nothing of its "
+        "displacement, and it wanders off the middle until the patch ends. In the curves at 300 mm deficiency "
+        "friction 0.08 cannot carry the lateral force at small contact angles: the wheelsets move to the flange, "
+        "whatever steers them, and come back behind the patch.",
     ),
 }
 
