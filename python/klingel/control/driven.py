@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 from klingel.control.basics import Timing, scheduled
 from klingel.control.diagram import BEYOND, Diagram
-from klingel.control.motors import DcMotors, InductionMotors, Motors, equal_currents, steering_voltage_max
+from klingel.control.motors import Dc, DcMotors, InductionMotors, Motors
 from klingel.control.traction import Traction
 from klingel.drives import induction_point, operating_point, steering_torque_max
-from klingel.vehicle import Drive, InductionDrive
+from klingel.vehicle import InductionDrive
 
 if TYPE_CHECKING:
     from klingel.vehicle import Vehicle
@@ -33,8 +33,8 @@ def motors_of(vehicle: Vehicle, traction: Traction | None, timing: Timing, speed
             return DrivenInduction(vehicle, drive, traction, timing)
         return InductionMotors(drive, induction_point(vehicle, speed), timing)
     if traction is not None:
-        return DrivenDc(vehicle, vehicle.dc_drive, traction, timing)
-    return DcMotors(vehicle.dc_drive, operating_point(vehicle, speed), timing)
+        return DrivenDc(vehicle=vehicle, drive=vehicle.dc_drive, traction=traction, timing=timing)
+    return DcMotors(drive=vehicle.dc_drive, point=operating_point(vehicle, speed), timing=timing)
 
 
 def mean_of(d: Diagram, w: str, quantity: str, timing: Timing) -> str:
@@ -46,26 +46,12 @@ def mean_of(d: Diagram, w: str, quantity: str, timing: Timing) -> str:
     return d.delay(name, now, timing.sensor_samples)
 
 
-@dataclass(frozen=True)
-class DrivenDc:
+@dataclass(frozen=True, kw_only=True)
+class DrivenDc(Dc):
     """DC motors under a traction loop: docs/theory/traction.md. The rated current bounds the mean of a pair."""
 
     vehicle: Vehicle
-    drive: Drive
     traction: Traction
-    timing: Timing
-    input: str = "armature_voltage"
-    probe: tuple[str, str] = ("steering_voltage", "V")
-
-    @property
-    def steering_max(self) -> float:
-        """(1 - x) VaMax [V]"""
-        return steering_voltage_max(self.drive)
-
-    @property
-    def lag(self) -> float:
-        """Of the armature, La/Ra [s]"""
-        return self.drive.armature_inductance / self.drive.armature_resistance
 
     def gain(self, d: Diagram, w: str, damping: Callable[[float], float]) -> str:
         """Through KT/(N Ra) of the measured field [V s/rad]"""
@@ -76,10 +62,6 @@ class DrivenDc:
     def per_speed(self, d: Diagram, w: str, ratio: float) -> str:
         """The back-EMF, KT/N [V/(rad/s)]"""
         return d.sum(f"{w}.u.per_speed", {self._torque_constant(d, w): ratio / self.drive.gear_ratio})
-
-    def equal_torques(self, d: Diagram, w: str, *, frequency: float) -> str:
-        """By equal armature currents [V]"""
-        return equal_currents(d, self.drive, w, timing=self.timing, frequency=frequency, limit=self.steering_max)
 
     def mean(self, d: Diagram, w: str) -> str:
         """Va = EMF + Ra Ia* + PI(Ia* - Ia) within +-x VaMax [V], Ia* = (N T + CM wM)/KT; and the field for it."""

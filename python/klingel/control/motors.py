@@ -94,30 +94,35 @@ def equal_currents(d: Diagram, drive: Drive, w: str, *, timing: Timing, frequenc
     )
 
 
-def steering_voltage_max(drive: Drive) -> float:
-    """(1 - x) VaMax [V]: what traction leaves for |u| of Eqs (22) and (23)."""
-    return (1.0 - drive.traction_share) * drive.armature_voltage_max
-
-
-@dataclass(frozen=True)
-class DcMotors:
-    """DC motors at their operating point: VaL = Va + u and VaR = Va - u, Eqs (22) and (23), Va that of the point."""
+@dataclass(frozen=True, kw_only=True)
+class Dc:
+    """What DC motors have in common, held or driven: VaL = Va + u and VaR = Va - u, Eqs (22) and (23)."""
 
     drive: Drive
-    point: OperatingPoint
     timing: Timing
     input: str = "armature_voltage"
     probe: tuple[str, str] = ("steering_voltage", "V")
 
     @property
     def steering_max(self) -> float:
-        """(1 - x) VaMax [V]"""
-        return steering_voltage_max(self.drive)
+        """(1 - x) VaMax [V]: what traction leaves for |u|."""
+        return (1.0 - self.drive.traction_share) * self.drive.armature_voltage_max
 
     @property
     def lag(self) -> float:
         """Of the armature, La/Ra [s]"""
         return self.drive.armature_inductance / self.drive.armature_resistance
+
+    def equal_torques(self, d: Diagram, w: str, *, frequency: float) -> str:
+        """By equal armature currents [V]"""
+        return equal_currents(d, self.drive, w, timing=self.timing, frequency=frequency, limit=self.steering_max)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DcMotors(Dc):
+    """DC motors at their operating point, Va that of the point."""
+
+    point: OperatingPoint
 
     def mean(self, d: Diagram, w: str) -> float:
         """Va [V]"""
@@ -131,10 +136,6 @@ class DcMotors:
     def per_speed(self, d: Diagram, w: str, ratio: float) -> float:
         """The back-EMF, KT/N [V/(rad/s)]"""
         return self.point.torque_constant / self.drive.gear_ratio * ratio
-
-    def equal_torques(self, d: Diagram, w: str, *, frequency: float) -> str:
-        """By equal armature currents [V]"""
-        return equal_currents(d, self.drive, w, timing=self.timing, frequency=frequency, limit=self.steering_max)
 
 
 @dataclass(frozen=True)
