@@ -67,5 +67,6 @@ $(VENV)/.packages: pyproject.toml
 	@touch $@
 
 $(VENV)/.extension: $(VENV)/.packages $(RUST_SOURCES)
+	@touch $@.begun  # sources edited while it builds are newer than this
 	$(BIN)/maturin develop --release --locked --uv --quiet
-	@touch $@
+	@mv $@.begun $@
