@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, Protocol, get_args
@@ -33,6 +33,11 @@ RUN_OUT = 2.0
 """Track kept free before the last and ahead of the first wheelset [m], for the drift of a slow speed hold."""
 
 
+MISMATCH_MAX = 0.01
+"""Largest difference of the radii of two wheels of a wheelset [m]: contact tables keep the nominal radius, half of this
+is one per cent of it. Workshops turn wheels of one axle to within some tenths of a millimetre."""
+
+
 class Strategy(Protocol):
     """What steers and drives a vehicle."""
 
@@ -51,7 +56,8 @@ class Scenario:
     contact: normal contact by `hertz` (an ellipse in every zone of the wheel) or `kik_piotrowski` (not Hertzian),
     equally fast; creep_law with creep_elements (along, across) for FASTSIM and its creep_options; wheel: profile of all
     wheels, None for the vehicle's; rail: its profile or the name of a standard one; rail_inclination (slope, positive
-    leans inwards), gauge;
+    leans inwards), gauge; radius_mismatch: radius of the right wheel minus that of the left one, of all wheelsets or of
+    the four from the front, each wheel has half of it;
     stick: creepages need way to build up, so that standing wheels stick instead of creeping;
     step: of the integrator; record_interval: of the results; duration: None runs to the end of the track; a vehicle
     that starts from rest needs one, with a traction loop it is that of the commands; energy: book it (channels
@@ -80,6 +86,7 @@ class Scenario:
     rail: str | Profile
     rail_inclination: float
     gauge: float
+    radius_mismatch: tuple[float, float, float, float]
     step: float
     record_interval: float
     duration: float | None
@@ -104,6 +111,7 @@ class Scenario:
         rail: str | Profile = "60E1",
         rail_inclination: Quantity = 0.025,
         gauge: Quantity = "1435 mm",
+        radius_mismatch: Quantity | Sequence[Quantity] = 0.0,
         step: Quantity = "0.5 ms",
         record_interval: Quantity = "1 ms",
         duration: Quantity | None = None,
@@ -126,6 +134,7 @@ class Scenario:
             "rail": rail,
             "rail_inclination": to_si(rail_inclination, "1", key="rail_inclination"),
             "gauge": to_si(gauge, "m", key="gauge"),
+            "radius_mismatch": _four(radius_mismatch, "radius_mismatch"),
             "step": to_si(step, "s", key="step"),
             "record_interval": to_si(record_interval, "s", key="record_interval"),
             "duration": None if duration is None else to_si(duration, "s", key="duration"),
@@ -178,6 +187,15 @@ def _as_tuple(value: object) -> object:
     return tuple(value) if isinstance(value, (list, tuple)) else value
 
 
+def _four(value: Quantity | Sequence[Quantity], key: str) -> tuple[float, ...]:
+    """Lengths of the four wheelsets from the front [m], from one for all or one each."""
+    if isinstance(value, (list, tuple)):
+        if len(value) != 4:
+            raise InputError.single(key, value, "is no length a wheelset", remedy="give one length, or four")
+        return tuple(to_si(each, "m", key=f"{key}[{i}]") for i, each in enumerate(value))
+    return (to_si(value, "m", key=key),) * 4  # type: ignore[arg-type]  # it refuses what is no quantity
+
+
 def _is_grid(elements: object) -> bool:
     """Two whole numbers within the limits; 10.0 and True are no whole numbers."""
     if not isinstance(elements, tuple) or len(elements) != 2:
@@ -202,6 +220,10 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
         yield Problem(
             "rail_inclination", scenario.rail_inclination, "is too steep", "give a slope such as 1/40 = 0.025"
         )
+    for i, mismatch in enumerate(scenario.radius_mismatch):
+        if not abs(mismatch) <= MISMATCH_MAX:
+            remedy = f"give at most {MISMATCH_MAX * 1e3:g} mm; plain numbers are metres"
+            yield Problem(f"radius_mismatch[{i}]", mismatch, "is too much for a pair of wheels [m]", remedy)
     for key, choice in (("contact", Contact), ("creep_law", CreepLaw)):
         value, known = getattr(scenario, key), get_args(choice)
         if (key, value) == ("creep_law", "exact"):
