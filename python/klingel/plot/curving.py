@@ -3,13 +3,14 @@ One history of the wheelsets in a curve, and four quantities over the curve radi
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from klingel.plot.style import BAND, INK, LOOKS, PALE, panels, styled
+from klingel.plot.style import BAND, INK, LOOKS, PALE, Look, panels, styled
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -53,6 +54,9 @@ FIGURES: Mapping[str, RadiusFigure] = {
 }
 """Figs 16 to 19 by their names."""
 
+FEW = 4
+"""Up to so many lines have their legend inside the axes; more have it below, hollow marks and sizes that differ."""
+
 WHEELSET_LINES: Sequence[tuple[str, float, str | tuple[int, tuple[float, ...]]]] = (
     (INK, 1.7, "-"),
     ("#0072B2", 0.95, (0, (5, 1.5))),
@@ -63,21 +67,29 @@ WHEELSET_LINES: Sequence[tuple[str, float, str | tuple[int, tuple[float, ...]]]]
 
 
 def displacement_history(
-    runs: Mapping[str, xr.Dataset], wheelsets: Sequence[str], course: Course, *, caption: str
+    runs: Mapping[str, xr.Dataset],
+    wheelsets: Sequence[str],
+    course: Course,
+    *,
+    caption: str,
+    looks: Mapping[str, Look] = LOOKS,
+    apart: Collection[str] = ("passive",),
 ) -> Figure:
-    """Fig. 15: lateral displacement of every wheelset over time, one panel a vehicle.
+    """Fig. 15: lateral displacement of every wheelset over time, one panel a vehicle or strategy.
 
     Args:
         runs: vehicle to its run through the same curve; channels `<wheelset>.y` and `<wheelset>.s` in m.
         wheelsets: their names, the leading one first.
         course: where the curve lies; transitions and arc are shaded by the passage of the leading wheelset.
         caption: which curve, for the title.
+        looks: how each vehicle is drawn and called.
+        apart: vehicles that have a scale of their own, as their titles say; all others share one.
 
     Returns:
-        The figure. The active vehicles share one scale; the passive one has its own, as its label says.
+        The figure.
     """
     with styled():
-        figure, axes = panels(len(runs), height=0.9 + 1.75 * len(runs))
+        figure, axes = panels(len(runs), height=0.9 + (1.75 if len(runs) <= FEW else 1.3) * len(runs))
         figure.suptitle(f"Lateral displacement of the wheelsets, {caption}", x=0.01, ha="left", weight="bold", size=10)
         for axis, (vehicle, run) in zip(axes, runs.items(), strict=True):
             time = run["time"].to_numpy()
@@ -86,13 +98,15 @@ def displacement_history(
             for order, (wheelset, (color, width, line)) in enumerate(reversed(drawn)):
                 y = 1e3 * run[f"{wheelset}.y"].to_numpy()
                 axis.plot(time, y, color=color, lw=width, ls=line, zorder=2 + order, label=_rank(len(drawn) - order))
-            axis.set_title(LOOKS[vehicle].label if vehicle in LOOKS else vehicle, weight="normal")
+            title = looks[vehicle].label if vehicle in looks else vehicle
+            own = vehicle in apart and len(runs) > 1
+            axis.set_title(f"{title}, on a scale of its own" if own else title, weight="normal")
             axis.set_ylabel("y  [mm]")
             axis.set_xlim(time[0], time[-1])
             axis.axhline(0.0, color=INK, lw=0.6, zorder=1)
-        active = [axis for axis, vehicle in zip(axes, runs, strict=True) if vehicle != "passive"]
-        reach = max((abs(limit) for axis in active for limit in axis.get_ylim()), default=1.0)
-        for axis in active:
+        alike = [axis for axis, vehicle in zip(axes, runs, strict=True) if vehicle not in apart]
+        reach = max((abs(limit) for axis in alike for limit in axis.get_ylim()), default=1.0)
+        for axis in alike:
             axis.set_ylim(-reach, reach)
         axes[-1].set_xlabel("time  [s]")
         handles, labels = axes[0].get_legend_handles_labels()
@@ -100,12 +114,15 @@ def displacement_history(
         return figure
 
 
-def per_radius(table: pd.DataFrame, name: str) -> Figure:
-    """Figs 16 to 19: one quantity over the radius of the curve, one line a vehicle.
+def per_radius(table: pd.DataFrame, name: str, *, looks: Mapping[str, Look] = LOOKS, by: str = "vehicle") -> Figure:
+    """Figs 16 to 19: one quantity over the radius of the curve, one line a vehicle or strategy.
 
     Args:
-        table: the summary: `vehicle`, `radius_m`, `speed_kmh`, `outcome` and the figure's own columns.
+        table: the summary: `radius_m`, `speed_kmh`, `outcome`, the column `by` and the figure's own; `curve` too where
+            several curves have one radius: these stand side by side, at equal distances.
         name: `fig16` ... `fig19`.
+        looks: how each vehicle is drawn and called, in the order of the legend.
+        by: column that says which vehicle a row is of.
 
     Returns:
         The figure. Runs that did not complete are crossed out.
@@ -115,55 +132,71 @@ def per_radius(table: pd.DataFrame, name: str) -> Figure:
     """
     quantity = FIGURES[name]
     with styled():
-        figure, (axis,) = panels(1)
+        drawn = [vehicle for vehicle in looks if (table[by] == vehicle).any()]
+        few = len(drawn) <= FEW
+        figure, (axis,) = panels(1, height=3.9 if few else 4.2 + 0.2 * math.ceil(len(drawn) / 2))
         axis.set_title(quantity.title, pad=10)
-        radii = table.drop_duplicates("radius_m").sort_values("radius_m")
+        table, ticks = _placed(table)
         if quantity.floor:
-            _floors(axis, table, quantity)
-        for vehicle, look in LOOKS.items():
-            rows = table[table["vehicle"] == vehicle].sort_values("radius_m")
-            if len(rows):
-                axis.plot(
-                    rows["radius_m"],
-                    rows[quantity.column],
-                    color=look.color,
-                    ls=look.line,
-                    marker=look.marker,
-                    markerfacecolor=look.color if look.filled else "white",
-                    markeredgewidth=1.4,
-                    label=look.label,
-                    zorder=4,
-                )
-        broken = table[table["outcome"] != "completed"]
+            _floors(axis, table, quantity, by)
+        for order, vehicle in enumerate(drawn):
+            look = looks[vehicle]
+            rows = table[table[by] == vehicle].sort_values("place")
+            axis.plot(
+                rows["place"],
+                rows[quantity.column],
+                color=look.color,
+                ls=look.line,
+                marker=look.marker,
+                markerfacecolor=look.color if look.filled else "none" if not few else "white",
+                markeredgewidth=1.4,
+                markersize=6.5 if few else 9.5 - 0.5 * order,
+                label=look.label,
+                zorder=4,
+            )
+        broken = table[(table["outcome"] != "completed") & table[quantity.column].notna()]
         if len(broken):
-            x, y = broken["radius_m"], broken[quantity.column]
+            x, y = broken["place"], broken[quantity.column]
             axis.plot(x, y, ls="", marker="x", ms=12, mew=1.6, color=PALE, zorder=5, label="run did not complete")
-        axis.set_xticks(
-            radii["radius_m"],
-            [f"{r:.0f}\n{v:.0f}" for r, v in zip(radii["radius_m"], radii["speed_kmh"], strict=True)],
-        )
+        axis.set_xticks(list(ticks), list(ticks.values()))
         axis.set_xlabel("curve radius  [m]   /   speed  [km/h]")
         axis.set_ylabel(quantity.label)
         axis.set_ylim(bottom=0.0, top=_headroom(table, quantity))
-        axis.legend(loc="best", handlelength=3.4)
+        if few:
+            axis.legend(loc="best", handlelength=3.4)
+        else:
+            figure.legend(loc="outside lower center", ncols=2, handlelength=4.2)
         return figure
 
 
-def _floors(axis: Axes, table: pd.DataFrame, quantity: RadiusFigure) -> None:
+def _placed(table: pd.DataFrame) -> tuple[pd.DataFrame, dict[float, str]]:
+    """The table with the abscissa of its rows as `place`, and the labels there: radii, or one curve after the other."""
+    keys = [key for key in ("radius_m", "speed_kmh", "curve") if key in table]
+    curves = table.drop_duplicates(keys).sort_values(keys, kind="stable")
+    labels = [f"{r:.0f}\n{v:.0f}" for r, v in zip(curves["radius_m"], curves["speed_kmh"], strict=True)]
+    if curves["radius_m"].is_unique:
+        return table.assign(place=table["radius_m"]), dict(zip(curves["radius_m"], labels, strict=True))
+    places = {key: float(i) for i, key in enumerate(curves[keys].itertuples(index=False, name=None))}
+    place = [places[key] for key in table[keys].itertuples(index=False, name=None)]
+    return table.assign(place=place), dict(zip(places.values(), labels, strict=True))
+
+
+def _floors(axis: Axes, table: pd.DataFrame, quantity: RadiusFigure, by: str) -> None:
     """The least achievable value, dotted: one line for all vehicles of the same mass."""
-    groups: dict[tuple[float, ...], list[str]] = {}
-    for vehicle, rows in table.sort_values("radius_m").groupby("vehicle", sort=False):
-        groups.setdefault(tuple(rows[quantity.floor].round(6)), []).append(str(vehicle))
+    groups: dict[tuple[tuple[float, float], ...], list[str]] = {}
+    known = table[table[quantity.floor].notna()].sort_values("place")
+    for vehicle, rows in known.groupby(by, sort=False):
+        floor = tuple(zip(rows["place"], rows[quantity.floor].round(6), strict=True))
+        groups.setdefault(floor, []).append(str(vehicle))
     for floor, vehicles in groups.items():
-        radii = table[table["vehicle"] == vehicles[0]].sort_values("radius_m")["radius_m"]
         passive = vehicles == ["passive"]
+        kinds = ", passive" if passive else ", active" if by == "vehicle" else f", {', '.join(vehicles)}"
         axis.plot(
-            radii,
-            floor,
+            *zip(*floor, strict=True),
             ls=":",
             lw=1.2 if passive else 2.0,
             color=PALE if passive else INK,
-            label=quantity.floor_label + ("" if len(groups) == 1 else ", passive" if passive else ", active"),
+            label=quantity.floor_label + (kinds if len(groups) > 1 else ""),
             zorder=3,
         )
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 
 import io
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+
+from klingel.errors import InputError
 
 INK = "#1a1a1a"
 PALE = "#8a8a8a"
@@ -44,6 +46,44 @@ LOOKS: Mapping[str, Look] = {
     "irw_like": Look("IRW-like (I)", "#D55E00", "^", (0, (4, 1.4, 1, 1.4)), filled=False),
 }
 """Look of each vehicle of the study."""
+
+SPARE: tuple[Look, ...] = (
+    Look("", "#009E73", "D", (0, (1.2, 1.0)), filled=False),
+    Look("", "#CC79A7", "v", (0, (8, 1.6, 1, 1.6, 1, 1.6)), filled=False),
+    Look("", "#56B4E9", "P", (0, (9, 2.2)), filled=False),
+    Look("", "#8C6D00", "X", (0, (3, 1.0)), filled=False),
+    Look("", "#4B2E83", "<", (0, (6, 1.4, 2, 1.4)), filled=False),
+    Look("", "#E69F00", ">", (0, (2.2, 2.2)), filled=False),
+    Look("", "#5c5c5c", "h", (0, (5, 1.2, 1, 1.2, 1, 1.2, 1, 1.2)), filled=False),
+    Look("", "#7A0019", "*", (0, (12, 1.6, 2, 1.6)), filled=False),
+    Look("", "#00545c", "p", (0, (1.2, 2.6)), filled=False),
+)
+"""Looks of what is not in `LOOKS`, in the order they are given away."""
+
+
+def looks_of(labels: Mapping[str, str]) -> dict[str, Look]:
+    """A look for each of several strategies: its own where it has one, else the next spare one.
+
+    Args:
+        labels: name to what the legend calls it.
+
+    Returns:
+        Name to look, in the same order; all differ in marker and line.
+
+    Raises:
+        InputError: there are more than marks and lines keep apart.
+
+    Example:
+        >>> [look.marker for look in looks_of({"passive": "passive", "mine": "my own"}).values()]
+        ['o', 'D']
+    """
+    spare = [name for name in labels if name not in LOOKS]
+    if len(spare) > len(SPARE):
+        message = f"no more than {len(SPARE)} strategies beside those of the paper can be told apart in one figure"
+        raise InputError.single("strategies", len(labels), message, remedy="compare them in two parts")
+    own = dict(zip(spare, SPARE, strict=False))
+    return {name: LOOKS[name] if name in LOOKS else replace(own[name], label=label) for name, label in labels.items()}
+
 
 RC: dict[Any, Any] = {
     "font.family": "DejaVu Sans",

@@ -15,15 +15,13 @@ from rich.table import Table
 import klingel
 from klingel import control, drives, library
 from klingel.assess import COLUMNS, Assessment
-from klingel.plot import FIGURES, displacement_history, per_radius, render
-from klingel.report.columns import HEADINGS, cell
-from klingel.report.files import write_whole
 from klingel.report.page import StudyPage, study_report
 from klingel.study.cases import FRICTION, STEP, VEHICLES, Run
+from klingel.study.folder import write_table
+from klingel.study.screen import print_runs
 
 if TYPE_CHECKING:
     from klingel.scenario import Scenario
-    from klingel.study.perez2004 import History
     from klingel.vehicle import Vehicle
 
 SHOWN = (
@@ -75,29 +73,7 @@ def operating_points(vehicle: Vehicle, speeds: Iterable[float]) -> pd.DataFrame:
 def write_tables(folder: Path, main: pd.DataFrame, beside: pd.DataFrame, points: pd.DataFrame) -> None:
     """`summary.csv`, `summary_variants.csv` and `table1.csv`."""
     for name, table in (("summary", main), ("summary_variants", beside), ("table1", points)):
-        text = table.to_csv(index=False, float_format="%.6g", lineterminator="\n")
-        write_whole(folder / f"{name}.csv", text.encode())
-
-
-def write_figures(folder: Path, main: pd.DataFrame, histories: Mapping[str, History]) -> dict[str, bytes]:
-    """`fig15` to `fig19` as SVG and PNG, as far as their runs exist; returns the SVG files by name."""
-    figures = {}
-    if histories:
-        one = next(iter(histories.values()))
-        figures["fig15"] = displacement_history(
-            {vehicle: history.displacement for vehicle, history in histories.items()},
-            one.wheelsets,
-            one.course,
-            caption=f"R = {1.0 / abs(one.course.curvature):.0f} m, {3.6 * one.speed:.0f} km/h",
-        )
-    if len(main):
-        figures |= {name: per_radius(main, name) for name in FIGURES}
-    svgs = {}
-    for name, figure in figures.items():
-        svgs[name] = render(figure, "svg", name=name)
-        write_whole(folder / f"{name}.svg", svgs[name])
-        write_whole(folder / f"{name}.png", render(figure, "png", name=name))
-    return svgs
+        write_table(folder / f"{name}.csv", table)
 
 
 CAPTIONS = {
@@ -196,22 +172,7 @@ def show(
         table.add_row(*row)
     console.print(table)
     if len(main):
-        console.print(_screen(main, "Main runs, friction 0.35"))
+        print_runs(console, main, "Main runs, friction 0.35", SHOWN)
     for name, rows in beside.groupby("variant", sort=False):
-        console.print(_screen(rows, str(name)))
+        print_runs(console, rows, str(name), SHOWN)
     console.print(f"{len(main) + len(beside)} runs in {elapsed:.1f} s, written to {folder}", highlight=False)
-
-
-def _screen(rows: pd.DataFrame, title: str) -> Table:
-    table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    for name in SHOWN:
-        heading = HEADINGS[name]
-        label = f"{heading.name}\n{heading.unit}" if heading.unit else heading.name
-        table.add_column(label, justify="left" if name in ("vehicle", "flange_contact", "outcome") else "right")
-    previous = None
-    for row in rows.to_dict("records"):
-        if previous not in (None, row["vehicle"]):
-            table.add_section()
-        previous = row["vehicle"]
-        table.add_row(*(cell(name, row[name]) for name in SHOWN))
-    return table

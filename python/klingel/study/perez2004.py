@@ -13,30 +13,20 @@ from rich.console import Console
 
 from klingel import library, result
 from klingel.assess import Assessment, curving
-from klingel.assess.header import Course, header_of
-from klingel.errors import InputError, SimulationError
 from klingel.study import output
 from klingel.study.cases import MAIN, VEHICLES, Run, study_runs
+from klingel.study.folder import History, conclude, history_of, study_folder, write_curving_figures
 from klingel.study.runner import Batch, run_all
+from klingel.study.screen import console as terminal
+from klingel.study.screen import prepare
 
 if TYPE_CHECKING:
     import pandas as pd
-    import xarray as xr
 
     from klingel._core import Progress
 
 HISTORY_RADIUS = 800.0
 """The curve of Fig. 15 [m]."""
-
-
-@dataclass(frozen=True)
-class History:
-    """What Fig. 15 needs of one run: displacement and position of the wheelsets, the curve, and the speed [m/s]."""
-
-    displacement: xr.Dataset
-    wheelsets: tuple[str, ...]
-    course: Course
-    speed: float
 
 
 @dataclass(frozen=True)
@@ -101,69 +91,28 @@ def run(
         KeyboardInterrupt: after Ctrl-C, once the finished runs are written, saying how many and where.
     """
     started = time.perf_counter()
-    console = console or _console()
+    console = console or terminal()
     runs = {
         each.name: each
         for each in study_runs(
             radii, vehicles=vehicles, friction_variants=friction_variants, database_variant=database_variant
         )
     }
-    folder = _folder(Path(out))
+    folder = study_folder(out)
 
     def work(name: str, progress: Progress) -> Finished:
         one = runs[name]
         series = result.simulate(one.scenario(), progress=progress)
         assessment = curving(series, vehicle=one.vehicle)
         result.save(series, folder / "runs" / f"{name}.nc")
-        return Finished(one, assessment, _history(series, one))
+        shown = one.variant == MAIN and one.case.radius == HISTORY_RADIUS
+        return Finished(one, assessment, history_of(series) if shown else None)
 
-    _prepare(runs, console)
+    prepare({name: one.scenario() for name, one in runs.items()}, console)
     batch = run_all(list(runs), work, result.progress, jobs=jobs, console=console)
     study = _written(folder, runs, batch, started, console)
-    if batch.interrupted:
-        raise KeyboardInterrupt(f"{len(batch.done)} of {len(runs)} runs are kept in {folder}")
-    if batch.failed:
-        listed = "\n".join(f"  {name}: {reason}" for name, reason in batch.failed.items())
-        raise SimulationError(f"{len(batch.failed)} of {len(runs)} runs failed, the rest is in {folder}\n{listed}")
+    conclude(batch, folder)
     return study
-
-
-def _prepare(runs: Mapping[str, Run], console: Console) -> None:
-    """Have the contact tables ready before the threads start, and say what that took."""
-    with console.status("contact tables: compiling, some seconds for a new pair"):
-        for one in runs.values():
-            for table in result.prepare(one.scenario()):
-                if table.origin != "memory":
-                    console.print(f"{one.vehicle}: {table}", highlight=False)
-
-
-def _console() -> Console:
-    """The terminal; a file or pipe gets lines long enough for the tables."""
-    console = Console()
-    return console if console.is_terminal else Console(width=150)
-
-
-def _folder(out: Path) -> Path:
-    """The folder of the study, with its `runs` inside."""
-    try:
-        (out / "runs").mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError.single(
-            "out", str(out), f"cannot be made a folder ({error.strerror})", remedy="choose another folder"
-        ) from None
-    return out
-
-
-def _history(series: xr.Dataset, one: Run) -> History | None:
-    """The displacements of a main run through the curve of Fig. 15, thinned to 200 Hz."""
-    if one.variant != MAIN or one.case.radius != HISTORY_RADIUS:
-        return None
-    header = header_of(series)
-    names = tuple(wheelset.name for wheelset in header.wheelsets)
-    channels = [f"{name}.{quantity}" for name in names for quantity in ("y", "s")]
-    interval = float(series["time"][1] - series["time"][0])
-    stride = max(1, round(5e-3 / interval))
-    return History(series[channels].isel(time=slice(None, None, stride)).copy(), names, header.course, header.speed)
 
 
 def _written(folder: Path, runs: Mapping[str, Run], batch: Batch[Finished], started: float, console: Console) -> Study:
@@ -178,7 +127,7 @@ def _written(folder: Path, runs: Mapping[str, Run], batch: Batch[Finished], star
     histories = {f.run.vehicle: f.history for f in done if f.history is not None}
     loads = {f.run.vehicle: f.assessment.static_wheel_loads for f in done if f.run.variant == MAIN}
     output.write_tables(folder, summary, variants, points)
-    figures = output.write_figures(folder, summary, {v: histories[v] for v in VEHICLES if v in histories})
+    figures = write_curving_figures(folder, summary, {v: histories[v] for v in VEHICLES if v in histories})
     output.write_report(
         folder,
         summary=summary,

@@ -15,9 +15,11 @@ from rich.console import Console
 from klingel import result
 from klingel.assess.header import header_of
 from klingel.assess.traction import PatchFigures, TractionFigures, patch, traction
-from klingel.errors import InputError, SimulationError
+from klingel.errors import InputError
 from klingel.study import traction_output as output
+from klingel.study.folder import conclude, study_folder
 from klingel.study.runner import Batch, run_all
+from klingel.study.screen import console as terminal
 from klingel.study.traction_cases import GROUPS, PARTS, STRATEGIES, TractionRun, traction_runs
 from klingel.study.traction_drives import DriveRun, curves_section, drive_runs, rig_section
 
@@ -88,7 +90,7 @@ def run(
         KeyboardInterrupt: after Ctrl-C, once the finished runs are written.
     """
     started = time.perf_counter()
-    console = console or output.console()
+    console = console or terminal(200)
     wanted, chosen = list(parts), list(strategies)
     unknown = [part for part in wanted if part not in PARTS]
     if unknown:
@@ -98,12 +100,7 @@ def run(
     }
     if "drives" in wanted:
         runs |= {each.name: each for each in drive_runs(chosen)}
-    folder = Path(out)
-    try:
-        (folder / "runs").mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        remedy = "choose another folder"
-        raise InputError.single("out", str(out), f"cannot be made a folder ({error.strerror})", remedy=remedy) from None
+    folder = study_folder(out)
 
     def work(name: str, progress: Progress) -> Finished | float:
         one = runs[name]
@@ -130,11 +127,7 @@ def run(
     output.write(folder, done, table, sections, failed=batch.failed)
     study = TractionStudy(folder, table, batch.failed, time.perf_counter() - started)
     output.show(console, table, folder, study.elapsed)
-    if batch.interrupted:
-        raise KeyboardInterrupt
-    if batch.failed:
-        listed = "\n".join(f"  {name}: {reason}" for name, reason in batch.failed.items())
-        raise SimulationError(f"{len(batch.failed)} of {len(runs)} runs failed, the rest is in {folder}\n{listed}")
+    conclude(batch, folder)
     return study
 
 

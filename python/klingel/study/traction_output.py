@@ -14,10 +14,10 @@ from rich.table import Table
 
 import klingel
 from klingel.assess import energy
-from klingel.plot.style import LOOKS, render
+from klingel.plot.style import LOOKS
 from klingel.plot.traction import patch_figure, run_figure
-from klingel.report.files import write_whole
 from klingel.report.sections import Listed, Picture, Section, sections_report
+from klingel.study.folder import write_figure, write_table
 
 if TYPE_CHECKING:
     from klingel.study.traction import Finished
@@ -71,12 +71,6 @@ PARTS = {
 }
 
 
-def console() -> Console:
-    """The terminal; a file or pipe gets lines long enough for the table."""
-    made = Console()
-    return made if made.is_terminal else Console(width=200)
-
-
 def summary(done: Iterable[Finished]) -> pd.DataFrame:
     """One row a run, with the figures of patches behind those of all runs."""
     rows = []
@@ -100,8 +94,7 @@ def write(
     failed: Mapping[str, str],
 ) -> None:
     """`summary.csv`, the figures and `report.html`, with sections beside those of the runs under traction."""
-    text = table.to_csv(index=False, float_format="%.6g", lineterminator="\n")
-    write_whole(folder / "summary.csv", text.encode())
+    write_table(folder / "summary.csv", table)
     sections: list[Section] = []
     for group, (title, words) in PARTS.items():
         members = [each for each in done if each.run.group == group]
@@ -142,10 +135,7 @@ def _picture(folder: Path, each: Finished) -> Picture:
     else:
         figure = run_figure(each.series, title=title, drive=vehicle.dc_drive)
         caption = "Torque and voltage of the first wheelset's motors and of all; grey: in the curve."
-    svg = render(figure, "svg", name=run.name)
-    write_whole(folder / f"{run.name}.svg", svg)
-    write_whole(folder / f"{run.name}.png", render(figure, "png", name=run.name))
-    return Picture(run.name, svg, f"{title}. {caption}")
+    return Picture(run.name, write_figure(folder, run.name, figure), f"{title}. {caption}")
 
 
 def _readable(table: pd.DataFrame) -> pd.DataFrame:
