@@ -10,7 +10,8 @@ from typing import Annotated
 import typer
 
 from klingel.cli import linear
-from klingel.cli.output import print_table
+from klingel.cli.compare import compare
+from klingel.cli.output import kept, print_table
 
 app = typer.Typer(
     name="klingel",
@@ -24,6 +25,7 @@ app.add_typer(study, name="study")
 app.command()(linear.modes)
 app.command()(linear.rootlocus)
 app.command("critical-speed")(linear.critical_speed)
+app.command()(compare)
 
 
 def _version(wanted: bool) -> None:
@@ -55,16 +57,10 @@ def perez2004(
     variants: Annotated[bool, typer.Option(help="Also friction 0.25 and 0.30 and the curvature database.")] = True,
 ) -> None:
     """Combined active steering and traction: three vehicles, five curves (Perez et al. 2004)."""
-    from klingel.errors import RunCancelledError
     from klingel.study import perez2004 as body
 
-    try:
+    with kept():
         body.run(out, jobs=jobs, radii=only or None, friction_variants=variants, database_variant=variants)
-    except KeyboardInterrupt as ended:
-        cancelled = RunCancelledError("the study was cancelled")
-        for kept in ended.args:
-            cancelled.add_note(kept)
-        raise cancelled from None
 
 
 @study.command()
@@ -82,7 +78,8 @@ def traction(
     from klingel.study import traction as body
     from klingel.study.traction_cases import PARTS
 
-    body.run(out, jobs=jobs, parts=only or PARTS)
+    with kept():
+        body.run(out, jobs=jobs, parts=only or PARTS)
 
 
 @app.command()

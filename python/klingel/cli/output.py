@@ -51,6 +51,20 @@ def working(what: str) -> Iterator[Status]:
         yield status
 
 
+@contextmanager
+def kept() -> Iterator[None]:
+    """A study that Ctrl-C ends says what of it is kept."""
+    from klingel.errors import RunCancelledError
+
+    try:
+        yield
+    except KeyboardInterrupt as ended:
+        cancelled = RunCancelledError("the study was cancelled")
+        for words in ended.args:
+            cancelled.add_note(words)
+        raise cancelled from None
+
+
 def draw(figure: Figure, out: Path) -> None:
     from klingel.plot.style import render
     from klingel.report.files import write_whole

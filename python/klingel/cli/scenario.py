@@ -55,14 +55,19 @@ def scenario_of(
         made = made.replace(control=strategy({"strategy": control}))
     for table in without or ():
         made = made.replace(vehicle=_without(made.vehicle, table))
-    for setting in settings or ():
-        name, equals, value = setting.partition("=")
-        if not equals:
-            raise InputError.single(
-                "set", setting, "sets nothing", remedy="give it as name=value, such as conicity=0.2"
-            )
-        made = parameters.replace(made, name.strip(), value.strip())
+    for each in settings or ():
+        made = parameters.replace(made, *setting(each))
     return made
+
+
+def setting(text: str) -> tuple[str, str]:
+    """Name and value of a `--set` option; errors: InputError."""
+    from klingel.errors import InputError
+
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise InputError.single("set", text, "sets nothing", remedy="give it as name=value, such as conicity=0.2")
+    return name.strip(), value.strip()
 
 
 def _without(vehicle: object, table: str) -> object:

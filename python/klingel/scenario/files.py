@@ -14,6 +14,7 @@ from klingel.contact import STANDARD, CreepOptions, Profile, profile_of
 from klingel.contact.checks import Kind
 from klingel.errors import InputError, Problem, nearest
 from klingel.records import Record, read_toml, validated
+from klingel.scenario import own
 from klingel.scenario.scenario import FRICTION, Scenario, Strategy
 from klingel.track import Adhesion, Hand, Patch, Rail, Segment, Track
 from klingel.units import Curvature, Length, Number, PositiveLength, PositiveNumber, to_si
@@ -110,7 +111,7 @@ def read(path: str | Path) -> Scenario:
     try:
         made: dict[str, Any] = {"vehicle": _vehicle(tables["vehicle"], path.parent), "track": _track(tables["track"])}
         if "control" in tables:
-            made["control"] = strategy(tables["control"])
+            made["control"] = strategy(tables["control"], folder=path.parent)
         if "creep_options" in tables:
             made["creep_options"] = _creep_options(tables["creep_options"])
         if "adhesion" in tables:
@@ -158,20 +159,34 @@ def _profile(name: object, kind: Kind, folder: Path) -> Profile | str:
     return name if kind == "rail" and name in STANDARD["rail"] else profile_of(name, kind, folder=folder)
 
 
-def strategy(table: object) -> Strategy:
-    """The strategy of a `[control]` table; errors: InputError."""
+def strategy(table: object, *, folder: Path = Path()) -> Strategy:
+    """The strategy of a `[control]` table: of the library, or `file.py:Name` (see `klingel.scenario.own`).
+
+    folder: that paths are relative to. Errors: InputError.
+    """
     if not isinstance(table, Mapping) or not isinstance(table.get("strategy"), str):
         raise InputError.single("control", table, "needs a strategy", remedy=f"use one of {', '.join(STRATEGIES)}")
     name = table["strategy"]
+    values = {key: value for key, value in table.items() if key != "strategy"}
+    if own.is_own(name):
+        kind = own.own(name, folder)
+        if isinstance(kind, type) and dataclasses.is_dataclass(kind):
+            values = _values(kind, values, "control")
+        ready: Strategy = own.made(kind, name, values)
+        return ready
     if name not in STRATEGIES:
         raise InputError.single("control.strategy", name, "is not known", remedy=nearest(name, list(STRATEGIES)))
-    values = {key: value for key, value in table.items() if key != "strategy"}
     made: Strategy = _made(STRATEGIES[name], values, "control")
     return made
 
 
 def _made(kind: type[Any], values: Mapping[str, Any], key: str) -> Any:
     """An object of a dataclass from a table, the tables inside it likewise; errors: InputError with every problem."""
+    return kind(**_values(kind, values, key))
+
+
+def _values(kind: type[Any], values: Mapping[str, Any], key: str) -> dict[str, Any]:
+    """What a dataclass is made with."""
     made: dict[str, Any] = {}
     problems: list[Problem] = []
     for name, value in values.items():
@@ -181,7 +196,7 @@ def _made(kind: type[Any], values: Mapping[str, Any], key: str) -> Any:
             problems += error.problems
     if problems:
         raise InputError(problems)
-    return kind(**made)
+    return made
 
 
 def _parameter(kind: type[Any], name: str, value: object, key: str) -> Any:

@@ -17,6 +17,7 @@ from klingel.report.columns import HEADINGS, Heading, cell
 if TYPE_CHECKING:
     import pandas as pd
 
+    from klingel.contact import Prepared
     from klingel.scenario import Scenario
 
 WORDS = ("vehicle", "flange_contact", "outcome")
@@ -30,12 +31,22 @@ def console(width: int = 150) -> Console:
 
 
 def prepare(scenarios: Mapping[str, Scenario], screen: Console) -> None:
-    """Have the contact tables ready before the threads start, and say what that took; scenarios by their titles."""
+    """Have the contact tables ready before the threads start, and say what that took; scenarios by their titles.
+
+    Those that cannot be made are passed over: their runs fail for the same reason, and are booked with it.
+    """
     with screen.status("contact tables: compiling, some seconds for a new pair"):
         for title, scenario in scenarios.items():
-            for table in result.prepare(scenario):
+            for table in _prepared(scenario):
                 if table.origin != "memory":
                     screen.print(f"{title}: {table}", highlight=False)
+
+
+def _prepared(scenario: Scenario) -> list[Prepared]:
+    try:
+        return result.prepare(scenario)
+    except Exception:  # whatever a user's strategy does
+        return []
 
 
 def print_runs(

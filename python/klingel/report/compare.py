@@ -1,0 +1,164 @@
+"""The page of a comparison: which strategies, through which curves, five figures, one table, stability, settings.
+One file, opens offline; the same input gives the same page."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from klingel.report.columns import HEADINGS as OF_ASSESSMENT
+from klingel.report.columns import Heading, cell
+from klingel.report.page import Report, inline_svg, template
+from klingel.report.parameters import strategy_rows, vehicle_rows
+from klingel.track import CANT_BASE
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from klingel.scenario import Scenario
+    from klingel.track import Track
+    from klingel.vehicle import Vehicle
+
+HEADINGS: Mapping[str, Heading] = {
+    "strategy": Heading("strategy", "", 0, "as it was named"),
+    "curve": Heading("curve", "", 0, "name of the curve"),
+    **OF_ASSESSMENT,
+    "vehicle": Heading("vehicle", "", 0, "that the strategy is run on"),
+}
+"""Heading of every column of the table; that of one curve is also right for words."""
+
+WORDS = ("strategy", "curve", "vehicle", "flange_contact", "outcome")
+"""Columns of words, which stand on the left."""
+
+GRAVITY = 9.81
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One of those compared: its name in the table, its label in the figures, vehicle and settings."""
+
+    name: str
+    label: str
+    scenario: Scenario
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve: its track, radius [m] and speed [m/s]."""
+
+    track: Track
+    radius: float
+    speed: float
+
+
+@dataclass(frozen=True)
+class ComparePage:
+    """What the page shows.
+
+    Attributes:
+        entries: those compared, in the order of the table.
+        curves: that they ran through.
+        table: `strategy`, `curve` and the columns of `klingel.assess.COLUMNS`.
+        straight: `strategy`, `speed_kmh`, `stable`, `damping`, `frequency_Hz`, `mode`.
+        figures: `fig15` ... to the bytes of an SVG file.
+        captions: of the figures, by the same names.
+        failed: runs without figures, with the reason.
+        version: of Klingel.
+    """
+
+    entries: Sequence[Entry]
+    curves: Sequence[Curve]
+    table: pd.DataFrame
+    straight: pd.DataFrame
+    figures: Mapping[str, bytes]
+    captions: Mapping[str, str]
+    failed: Mapping[str, str]
+    version: str
+
+
+def compare_report(page: ComparePage) -> Report:
+    """The page of a comparison."""
+    straight, heads = straight_cells(page.straight)
+    vehicles: dict[str, Vehicle] = {entry.scenario.vehicle.name: entry.scenario.vehicle for entry in page.entries}
+    return Report(
+        template("compare.html").render(
+            page=page,
+            entries=[_entry(entry) for entry in page.entries],
+            curves=[_curve(curve) for curve in page.curves],
+            headings=HEADINGS,
+            words=WORDS,
+            rows=[{name: cell(name, row[name]) for name in HEADINGS} for row in page.table.to_dict("records")],
+            straight_heads=heads,
+            straight_rows=straight,
+            unknown=unknown(page.straight),
+            figures={name: inline_svg(svg, name) for name, svg in page.figures.items()},
+            vehicles=list(vehicles.values()),
+            parameters={name: vehicle_rows(vehicle) for name, vehicle in vehicles.items()},
+            strategies={entry.name: _settings(entry.scenario.control) for entry in page.entries},
+        )
+    )
+
+
+def straight_cells(straight: pd.DataFrame) -> tuple[list[list[str]], list[str]]:
+    """Stability on straight track as rows of text, a column a speed, and the heads of the columns.
+
+    A cell is the least damping ratio in percent with the frequency of its mode in Hz, or that it is unstable.
+    """
+    speeds = list(dict.fromkeys(straight["speed_kmh"]))
+    rows = [
+        [str(name), *(_damping(rows[rows["speed_kmh"] == speed]) for speed in speeds)]
+        for name, rows in straight.groupby("strategy", sort=False)
+    ]
+    return rows, ["strategy", *(f"{speed:.0f} km/h" for speed in speeds)]
+
+
+def _damping(rows: pd.DataFrame) -> str:
+    if not len(rows) or rows["stable"].iloc[0] == "unknown":
+        return "unknown"
+    damping, frequency = float(rows["damping"].iloc[0]), float(rows["frequency_Hz"].iloc[0])
+    head = "unstable: " if damping < 0.0 else ""
+    return f"{head}{100.0 * damping:.1f} % at {frequency:.2f} Hz"
+
+
+def unknown(straight: pd.DataFrame) -> dict[str, str]:
+    """Strategies without a linear model, with the reason."""
+    rows = straight[straight["stable"] == "unknown"].drop_duplicates("strategy")
+    return {str(name): str(reason) for name, reason in zip(rows["strategy"], rows["mode"], strict=True)}
+
+
+def _settings(steering: object) -> list[dict[str, str]]:
+    """Settings of a strategy; none of a user's own that is no dataclass, or of no control."""
+    return strategy_rows(steering) if dataclasses.is_dataclass(steering) else []
+
+
+def _entry(entry: Entry) -> dict[str, str]:
+    scenario = entry.scenario
+    rail = scenario.rail if isinstance(scenario.rail, str) else scenario.rail.name
+    friction = "along the track" if scenario.adhesion is not None else f"{scenario.friction:g}"
+    steering = "none" if scenario.control is None else type(scenario.control).__name__
+    return {
+        "strategy": entry.name,
+        "drawn as": entry.label,
+        "vehicle": scenario.vehicle.name,
+        "control": steering,
+        "friction": friction,
+        "rail": f"{rail} at {scenario.rail_inclination:g}, gauge {1e3 * scenario.gauge:.1f} mm",
+        "contact": f"{scenario.contact}, creep forces {scenario.creep_law}",
+        "step [ms]": f"{1e3 * scenario.step:g}",
+    }
+
+
+def _curve(curve: Curve) -> dict[str, str]:
+    cant = max((abs(h) for segment in curve.track.segments for h in segment.cant), default=0.0)
+    acceleration = curve.speed**2 / curve.radius * math.sqrt(1.0 - (cant / CANT_BASE) ** 2) - GRAVITY * cant / CANT_BASE
+    return {
+        "curve": curve.track.name,
+        "R [m]": f"{curve.radius:g}",
+        "V [km/h]": f"{3.6 * curve.speed:.4g}",
+        "cant [mm]": f"{1e3 * cant:.0f}",
+        "unbalanced acceleration [m/s²]": f"{acceleration:.2f}",
+        "length [m]": f"{curve.track.length:.0f}",
+    }

@@ -1,0 +1,286 @@
+"""What a comparison is made of: contenders, each a strategy on the vehicle it is made for, and curves with speeds.
+Both are read from short texts; nothing here simulates."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from klingel import control, library
+from klingel.assess.header import course_of
+from klingel.errors import InputError, nearest
+from klingel.linear import parameters
+from klingel.scenario import Scenario, Strategy
+from klingel.scenario.files import STRATEGIES, strategy
+from klingel.study.cases import STEP
+from klingel.track import CANT_BASE, Track
+from klingel.track.cases import Case, perez2004
+from klingel.units import Quantity, to_si
+from klingel.vehicle import Vehicle
+
+MADE_FOR: Mapping[type[Any], str] = {control.Passive: "manchester_coach"}
+"""Vehicle of the library that a strategy is made for, where it is not `USUAL`."""
+
+USUAL = "mechatronic_irw"
+"""Vehicle of all other strategies, and of a user's own."""
+
+STEP_SAFE = 0.5e-3
+"""Integration step of strategies that `klingel.study.cases.STEP` says nothing of [s]."""
+
+TRANSITION, ARC, STRAIGHT, STRAIGHT_MORE = 4.0, 6.0, 3.0, 25.0
+"""Seconds that a curve without lengths lasts: either transition, arc, either straight with these metres more; about
+what the five curves of the study have."""
+
+CURVE_KEYS = tuple(inspect.signature(Track.curve).parameters)
+
+
+@dataclass(frozen=True)
+class Contender:
+    """One of those compared.
+
+    name: in tables and of its files; label: in legends; scenario: vehicle, strategy and all settings; its track and
+    speed are those of each curve in turn.
+    """
+
+    name: str
+    label: str
+    scenario: Scenario
+
+    def through(self, case: Case) -> Scenario:
+        """Its run through a curve; errors: InputError as Scenario."""
+        return self.scenario.replace(track=case.track, speed=case.speed, duration=None)
+
+    def straight(self, speed: float) -> Scenario:
+        """The same on straight level track at a speed [m/s]; errors: InputError as Scenario."""
+        return self.scenario.replace(track=Track.straight("1 km"), speed=speed, duration=None)
+
+    @property
+    def words(self) -> str:
+        """Vehicle and strategy in words."""
+        steering = self.scenario.control
+        return f"{self.scenario.vehicle.name}, {'no control' if steering is None else type(steering).__name__}"
+
+
+def contenders(
+    strategies: Mapping[str, Any] | Iterable[str],
+    first: Case,
+    *,
+    vehicle: str | Vehicle | None = None,
+    settings: Mapping[str, Quantity] | None = None,
+) -> list[Contender]:
+    """Those to compare, checked on the first curve.
+
+    Args:
+        strategies: texts, or name to a text, a Strategy, None for no control, or a Scenario. A text is
+            `[name=]what[:key=value,...]`: a strategy of the library, `file.py:Name` of one's own, or a scenario file
+            (.toml), then parameters of the strategy as scenario files have them, also `step`, and `vehicle` of this
+            one.
+        first: curve that they are checked on.
+        vehicle: of all that do not say their own: of the library, or a vehicle file (.toml).
+        settings: numbers by dotted path (`klingel.linear.parameters`), for all.
+
+    Raises:
+        InputError: an unknown strategy, parameter or vehicle, one that does not fit, a name given twice.
+
+    Example:
+        >>> one, other = contenders(["passive", "known=irw_like:curvature=database,frequency=1.2"], perez2004()[0])
+        >>> one.words, other.name, other.scenario.control.frequency
+        ('manchester_coach, Passive', 'known', 1.2)
+    """
+    named = list(strategies.items()) if isinstance(strategies, Mapping) else [_named(text) for text in strategies]
+    if not named:
+        remedy = f"name some of {', '.join(STRATEGIES)}, a file.py:Name or a scenario file"
+        raise InputError.single("strategies", None, "there is nothing to compare", remedy=remedy)
+    files = [slug(name) for name, _ in named]
+    twice = [name for name, _ in named if files.count(slug(name)) > 1]
+    if twice:
+        remedy = "give each its own name, such as quick=irw_like:frequency=2"
+        raise InputError.single("strategies", twice, "have the same name", remedy=remedy)
+    made = [_contender(name, what, first, vehicle) for name, what in named]
+    for path, value in (settings or {}).items():
+        made = [dataclasses.replace(c, scenario=parameters.replace(c.scenario, path, value)) for c in made]
+    return made
+
+
+def _contender(name: str, what: object, first: Case, vehicle: str | Vehicle | None) -> Contender:
+    label = " ".join(name.replace("_", " ").replace(":", ": ").replace(",", ", ").split())
+    if isinstance(what, Scenario):
+        return Contender(name, label, what if vehicle is None else what.replace(vehicle=_vehicle(vehicle)))
+    if not isinstance(what, str):
+        return Contender(name, label, _scenario(what, first, vehicle, {}))
+    head, given = split(what)
+    own = given.pop("vehicle", None)
+    chosen = vehicle if own is None else own
+    if not head.endswith(".toml"):
+        step = {"step": given.pop("step")} if "step" in given else {}
+        step = step or ({"step": STEP[head]} if head in STEP else {})
+        steering = strategy({"strategy": head, **given})
+        return Contender(name, label, _scenario(steering, first, chosen, step))
+    read = Scenario.read(head)
+    if chosen is not None:
+        read = read.replace(vehicle=_vehicle(chosen))
+    if "step" in given:
+        read = read.replace(step=given.pop("step"))
+    for key, value in given.items():
+        read = parameters.replace(read, f"control.{key}", value)
+    return Contender(name, label, read)
+
+
+def _scenario(what: object, first: Case, vehicle: str | Vehicle | None, settings: Mapping[str, Any]) -> Scenario:
+    """A strategy on the given vehicle, or on the one it is made for."""
+    if what is not None and not callable(getattr(what, "lower", None)):
+        remedy = "give a text, a Strategy, None or a Scenario"
+        raise InputError.single("strategies", what, "is no strategy", remedy=remedy)
+    steering: Strategy | None = what  # type: ignore[assignment]  # it has what a Strategy has
+    made_for = MADE_FOR.get(type(what if what is not None else control.Passive()), USUAL)
+    chosen = _vehicle(made_for if vehicle is None else vehicle)
+    step = {"step": STEP_SAFE} | dict(settings)
+    return Scenario(chosen, first.track, speed=first.speed, control=steering, **step)
+
+
+def slug(name: str) -> str:
+    """A name as a part of file names.
+
+    >>> slug("irw_like:curvature=database")
+    'irw_like_curvature_database'
+    """
+    return re.sub(r"[^\w.+-]+", "_", name)
+
+
+def _vehicle(vehicle: str | Vehicle) -> Vehicle:
+    if isinstance(vehicle, Vehicle):
+        return vehicle
+    return Vehicle.read(vehicle) if vehicle.endswith(".toml") else library.vehicle(vehicle)
+
+
+def _named(text: str) -> tuple[str, str]:
+    """A name and what it stands for: `name=what`, or the text itself for both."""
+    found = re.fullmatch(r"\s*([\w .+-]*[\w+-])\s*=(.+)", text, flags=re.DOTALL)
+    return (found.group(1), found.group(2)) if found else (text, text)
+
+
+def split(text: str) -> tuple[str, dict[str, Any]]:
+    """What a text names, and its parameters; dots in a key make tables.
+
+    Raises:
+        InputError: a parameter without value.
+
+    Example:
+        >>> split("mine.py:Mine:gain=2,timing.sample_time=2 ms")
+        ('mine.py:Mine', {'gain': 2, 'timing': {'sample_time': '2 ms'}})
+    """
+    found = re.fullmatch(r"(.*?\.py:[^:=,]+|[^:]*)(?::(.*))?", text, flags=re.DOTALL)
+    head, tail = (found.group(1), found.group(2)) if found else (text, None)
+    given: dict[str, Any] = {}
+    for pair in (tail or "").split(",") if tail else ():
+        key, equals, value = pair.partition("=")
+        if not equals or not key.strip():
+            remedy = "give parameters as key=value,key=value"
+            raise InputError.single("strategies", text, f"{pair!r} sets nothing", remedy=remedy)
+        *tables, last = key.strip().split(".")
+        place = given
+        for table in tables:
+            place = place.setdefault(table, {})
+        place[last] = _value(value.strip())
+    return head, given
+
+
+def _value(text: str) -> bool | int | float | str:
+    """A value as a TOML file would have it, but for quotes."""
+    if text in ("true", "false"):
+        return text == "true"
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text.strip("'\"")
+
+
+def curves(wanted: Iterable[float | str | Case] | None) -> list[Case]:
+    """Curves, each with its speed, sharpest first; their tracks have different names.
+
+    Args:
+        wanted: of each the radius of one of the five curves of Perez et al. (2004) [m]; `R=500,speed=140 km/h` with any
+            keyword of `Track.curve` (lengths not given last as long as those of the five, no cant); a scenario file
+            (.toml), of which track and speed are taken; or a Case. None: the five.
+
+    Raises:
+        InputError: an unknown radius or key, a missing speed, a track with no single arc.
+
+    Example:
+        >>> [case.track.name for case in curves(["R=500,cant=100mm,speed=100km/h", 300])]
+        ['R300', 'R500']
+    """
+    known = perez2004()
+    made = list(known) if wanted is None else [_case(each, known) for each in wanted]
+    if not made:
+        raise InputError.single("curves", None, "there is none", remedy="give one, or leave it out for the five")
+    made.sort(key=lambda case: (case.radius, case.speed))
+    return list(_distinct(made))
+
+
+def _case(wanted: object, known: tuple[Case, ...]) -> Case:
+    if isinstance(wanted, Case):
+        return wanted
+    if isinstance(wanted, str) and wanted.endswith(".toml"):
+        read = Scenario.read(wanted)
+        return _of_track(dataclasses.replace(read.track, name=Path(wanted).stem), read.speed, wanted)
+    if isinstance(wanted, str) and "=" in wanted:
+        return _of_text(wanted)
+    radius = to_si(_value(wanted) if isinstance(wanted, str) else wanted, "m", key="curves")  # type: ignore[arg-type]
+    for case in known:
+        if abs(case.radius - radius) < 1e-6:
+            return case
+    listed = ", ".join(f"{case.radius:.0f}" for case in known)
+    remedy = f"choose from {listed}, or describe it: R={radius:g},cant=100 mm,speed=100 km/h"
+    raise InputError.single("curves", wanted, "is none of the five curves [m]", remedy=remedy)
+
+
+def _of_text(text: str) -> Case:
+    """A curve from `R=500,cant=160 mm,speed=140 km/h`."""
+    given: dict[str, Any] = {}
+    for pair in text.split(","):
+        key, _, value = pair.partition("=")
+        given["radius" if key.strip() == "R" else key.strip()] = _value(value.strip())
+    unknown = [key for key in given if key not in (*CURVE_KEYS, "speed")]
+    if unknown:
+        remedy = nearest(unknown[0], [*CURVE_KEYS, "speed", "R"])
+        raise InputError.single(f"curves.{unknown[0]}", given[unknown[0]], "is not a known key", remedy=remedy)
+    for key in ("radius", "speed"):
+        if key not in given:
+            raise InputError.single("curves", text, f"has no {key}", remedy="give it as R=500,speed=140 km/h")
+    speed = to_si(given.pop("speed"), "m/s", key="curves.speed")
+    straight = dict.fromkeys(("straight_before", "straight_after"), STRAIGHT * speed + STRAIGHT_MORE)
+    lasting = {"transition": TRANSITION * speed, "arc": ARC * speed} | straight
+    name = f"R{to_si(given['radius'], 'm', key='curves.radius'):g}"
+    try:
+        return _of_track(Track.curve(**({"name": name} | lasting | given)), speed, text)
+    except InputError as error:
+        raise error.within("curves") from None
+
+
+def _of_track(track: Track, speed: float, given: object) -> Case:
+    segments = [dataclasses.asdict(segment) for segment in track.segments]
+    try:
+        course = course_of({"segments": segments, "cant_base": CANT_BASE})
+    except InputError as error:
+        problem = error.problems[0]
+        raise InputError.single("curves", given, problem.message, remedy=problem.remedy) from None
+    return Case(round(1.0 / abs(course.curvature), 6), speed, track)
+
+
+def _distinct(cases: Iterable[Case]) -> Iterator[Case]:
+    """Cases whose tracks have different names: with the speed, then a number, where they would share one."""
+    seen: set[str] = set()
+    for case in cases:
+        name = case.track.name or f"R{case.radius:g}"
+        tries = iter([name, f"{name}_{3.6 * case.speed:.0f}kmh", *(f"{name}_{i}" for i in range(2, 100))])
+        free = next(each for each in tries if each not in seen)
+        seen.add(free)
+        yield dataclasses.replace(case, track=dataclasses.replace(case.track, name=free))
