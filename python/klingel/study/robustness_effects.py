@@ -1,0 +1,154 @@
+"""What each input of a study of robustness does to a scenario: one small function each, scenario in, scenario out.
+Strategies stay designed for the nominal vehicle; wheel and rail, load and errors of sensors are unknown to them."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from klingel.contact import CreepOptions
+from klingel.errors import InputError
+from klingel.scenario import Scenario, Strategy
+from klingel.study.robustness_pairs import with_conicity
+from klingel.track import Track
+from klingel.vehicle import Vehicle
+from klingel.vehicle.bodies import Inertia
+
+
+@dataclass(frozen=True)
+class DesignedFor:
+    """A strategy that goes on steering the vehicle that it was designed for, whatever it sits in.
+
+    Everything but its design is that of the strategy itself.
+    """
+
+    strategy: Strategy
+    vehicle: Vehicle
+
+    def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any] | None:
+        """The controller for the vehicle of the design, not for the one that runs."""
+        return self.strategy.lower(self.vehicle, track, speed)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__") or name == "strategy":
+            raise AttributeError(name)
+        return getattr(self.strategy, name)
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An input of the study.
+
+    unit: SI, of its values; title: in tables; shown, factor: the unit that people read, and how many of it make one of
+    `unit`; nominal: value without effect, None where the scenario's own is meant; least, most: values that make sense;
+    steers: whether it acts on the strategy only; change: the scenario with the input at a value.
+    """
+
+    title: str
+    unit: str
+    change: Callable[[Scenario, float], Scenario]
+    nominal: float | None = 0.0
+    least: float = -math.inf
+    most: float = math.inf
+    shown: str = ""
+    factor: float = 1.0
+    steers: bool = False
+
+    def check(self, key: str, value: float) -> None:
+        """Errors: InputError for a value that makes no sense."""
+        if not self.least <= value <= self.most:
+            remedy = f"give {self.least:g} to {self.most:g} {'' if self.unit == '1' else self.unit}".rstrip()
+            raise InputError.single(key, value, f"is out of range [{self.unit}]", remedy=remedy)
+
+    def acts_on(self, scenario: Scenario) -> bool:
+        """Whether the scenario has what the input changes."""
+        return not self.steers or scenario.control is not None
+
+    def text(self, value: float) -> str:
+        """A value as people read it.
+
+        >>> EFFECTS["payload"].text(8000.0), EFFECTS["friction"].text(0.35)
+        ('8 t', '0.35')
+        """
+        return f"{value * self.factor:.4g} {self.shown}".rstrip()
+
+
+def friction(scenario: Scenario, value: float) -> Scenario:
+    """One coefficient of friction for all contacts."""
+    return scenario.replace(friction=value, adhesion=None)
+
+
+def creep_reduction(scenario: Scenario, value: float) -> Scenario:
+    """Creep forces with a share of Kalker's slope at small creepage, up to the same friction limit.
+
+    Of the laws, `polach` takes it as kA = kS, `fastsim` as k0; runs with another law go on with `polach`, whose
+    closed form costs no more.
+
+    >>> from klingel import library
+    >>> coach = Scenario(library.vehicle("manchester_coach"), Track.straight("500 m"), speed=30.0)
+    >>> creep_reduction(coach, 0.6).creep_law, creep_reduction(coach, 0.6).creep_options.reduction
+    ('polach', (0.6, 0.6))
+    """
+    falling = scenario.creep_options.falling
+    if scenario.creep_law == "fastsim":
+        options = CreepOptions(blended=scenario.creep_options.blended, slope=(value, 1.0, 1.0), falling=falling)
+        return scenario.replace(creep_options=options)
+    return scenario.replace(creep_law="polach", creep_options=CreepOptions(reduction=(value, value), falling=falling))
+
+
+def payload(scenario: Scenario, value: float) -> Scenario:
+    """A body heavier by that [kg], its inertia grown alike; springs carry it in the same height, as air springs do."""
+    vehicle = scenario.vehicle
+    body = vehicle.body
+    share = (body.mass + value) / body.mass
+    inertia = Inertia(**{axis: share * getattr(body.inertia, axis) for axis in ("roll", "pitch", "yaw")})
+    heavier = body.model_copy(update={"mass": body.mass + value, "inertia": inertia})
+    return believed(scenario).replace(vehicle=vehicle.replace(body=heavier))
+
+
+def believed(scenario: Scenario) -> Scenario:
+    """The scenario whose strategy is designed for its vehicle as it is now, whatever changes later."""
+    control = scenario.control
+    if control is None or isinstance(control, DesignedFor):
+        return scenario
+    return scenario.replace(control=DesignedFor(control, scenario.vehicle))
+
+
+def delay(scenario: Scenario, value: float) -> Scenario:
+    """Measurements later by that [s], in whole samples."""
+    held = scenario.control
+    strategy = held.strategy if isinstance(held, DesignedFor) else held
+    timing = strategy.timing  # type: ignore[union-attr]
+    late = dataclasses.replace(timing, sensor_samples=timing.sensor_samples + round(value / timing.sample_time))
+    slowed = dataclasses.replace(strategy, timing=late)  # type: ignore[type-var]
+    return scenario.replace(control=dataclasses.replace(held, strategy=slowed) if held is not strategy else slowed)
+
+
+EFFECTS: Mapping[str, Effect] = {
+    "conicity": Effect("conicity", "1", with_conicity, nominal=None, least=0.01, most=0.8),
+    "friction": Effect("friction", "1", friction, nominal=None, least=0.01, most=1.5),
+    "creep_reduction": Effect("share of Kalker's slope", "1", creep_reduction, nominal=1.0, least=0.05, most=1.0),
+    "payload": Effect("payload", "kg", payload, least=0.0, most=30e3, shown="t", factor=1e-3),
+    "delay": Effect("delay", "s", delay, least=0.0, most=1.0, shown="ms", factor=1e3, steers=True),
+}
+"""Every input of the study, in the order of its tables."""
+
+
+def changed(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
+    """The scenario with inputs at their values; a creep law that takes a reduction is chosen if it is among them.
+
+    >>> from klingel import control, library
+    >>> vehicle, track = library.vehicle("mechatronic_irw"), Track.straight("500 m")
+    >>> active = Scenario(vehicle, track, speed=30.0, control=control.IRWLike())
+    >>> heavy = changed(active, {"payload": 8e3, "friction": 0.2})
+    >>> heavy.vehicle.body.mass, heavy.control.vehicle.body.mass, heavy.friction
+    (40000.0, 32000.0, 0.2)
+    """
+    made = believed(scenario)
+    for name, effect in EFFECTS.items():
+        if name in values:
+            made = effect.change(made, values[name])
+    return made
