@@ -57,7 +57,7 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, strict: bo
     Errors: SimulationError for a spec that the core refuses or has no equilibrium for, and if `strict` for a run that
     did not complete; RunCancelledError.
     """
-    externals = getattr(scenario.control, "externals", dict)()
+    externals: dict[str, Called] = getattr(scenario.control, "externals", dict)()
     return simulate_spec(lower(scenario), progress=progress, strict=strict, externals=externals)
 
 

@@ -76,12 +76,13 @@ def transfer_function(
         raise InputError.single("numerator", list(numerator), "is nil", remedy="leave the filter out")
     if len(n) > len(d):
         remedy = "give at least as many poles as zeros, coefficients highest power first"
-        raise InputError.single("denominator", list(denominator), "is of a lower order than the numerator", remedy=remedy)
+        raise InputError.single("denominator", list(denominator), "is of a lower order", remedy=remedy)
     if d[-1] == 0.0:
         remedy = "take the integral out of it and use a `pi` block"
         raise InputError.single("denominator", list(denominator), "has a pole at s = 0", remedy=remedy)
-    rows = zpk2sos(*tf2zpk(n, d), pairing="minimal", analog=True)
-    sections = ((tuple(row[2::-1]), tuple(row[:2:-1])) for row in rows.tolist())
+    zeros, poles, gain = tf2zpk(n, d)
+    rows = zpk2sos(zeros, poles, gain, pairing="minimal", analog=True).tolist()
+    sections = (((b0, b1, b2), (a0, a1, a2)) for b2, b1, b0, a2, a1, a0 in rows)
     return [bilinear(b, a, sample_time=sample_time, prewarp=prewarp) for b, a in sections]
 
 

@@ -1,6 +1,5 @@
 """Controllers written as a Python class with `reset()` and `step(t, measurements) -> commands`.
-The core calls a copy of it at every sample of a run; whatever goes wrong in it ends that run, with its name and the time.
-"""
+The core calls a copy of it at every sample of a run; what goes wrong in it ends that run, with name and time."""
 
 from __future__ import annotations
 
@@ -149,7 +148,7 @@ class Called:
         self._controller.reset()
 
     def step(self, time: float, inputs: Sequence[float]) -> list[float]:
-        """Errors: InputError for a name that is missing or not declared; TypeError and ValueError for what is no number."""
+        """Errors: InputError for names missing or not declared; TypeError, ValueError for what is no number."""
         given = self._controller.step(time, dict(zip(self._measurements, inputs, strict=True)))
         if not isinstance(given, Mapping):
             return [float(value) for value in given]
@@ -160,7 +159,9 @@ class Called:
     def _misnamed(self, given: Mapping[str, float]) -> Iterator[Problem]:
         for name in self._outputs:
             if name not in given:
-                yield Problem(f"command {name}", None, "is missing from what step() returned", "give every one declared")
+                yield Problem(
+                    f"command {name}", None, "is missing from what step() returned", "give every one declared"
+                )
         for name in given:
             if name not in self._outputs:
                 yield Problem(f"command {name}", None, "is not declared", nearest(name, self._outputs))
