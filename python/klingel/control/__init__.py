@@ -1,32 +1,57 @@
 """Control strategies of mechatronic vehicles: small frozen objects that lower to the core's block diagrams.
-S and I of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 207-217, others beside them, and none."""
+S and I of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 207-217, others, none, and your own."""
 
-from klingel.control.basics import Timing
+from klingel.control.basics import WHEELSETS, Timing, Wheelset, scheduled
+from klingel.control.common import Plant, command_steering, speed_difference
+from klingel.control.composed import Composed
+from klingel.control.diagram import Diagram
+from klingel.control.discrete import Section, bilinear, lead, low_pass, notch, slope_low_pass, transfer_function
 from klingel.control.feedforward import ContactDesign
 from klingel.control.irw_like import IRWLike
 from klingel.control.lateral_feedback import LateralFeedback
+from klingel.control.own import PythonController
 from klingel.control.passive import Passive
 from klingel.control.passive_irw import PassiveIRW
 from klingel.control.secondary_yaw import SecondaryYaw
 from klingel.control.slip import SlipControl
 from klingel.control.solid_like import SolidLike
+from klingel.control.state_space import DiscreteController
+from klingel.control.steering import hold_equal_torques
 from klingel.control.traction import Traction
 from klingel.control.trailed_irw import TrailedIRW
 from klingel.control.yaw_moment import YawMoment
 from klingel.control.yaw_relaxation import YawRelaxation
 
 __all__ = [
+    "WHEELSETS",
+    "Composed",
     "ContactDesign",
+    "Diagram",
+    "DiscreteController",
     "IRWLike",
     "LateralFeedback",
     "Passive",
     "PassiveIRW",
+    "Plant",
+    "PythonController",
     "SecondaryYaw",
+    "Section",
     "SlipControl",
     "SolidLike",
     "Timing",
     "Traction",
     "TrailedIRW",
+    "Wheelset",
     "YawMoment",
     "YawRelaxation",
+    "bilinear",
+    "command_steering",
+    "hold_equal_torques",
+    "lead",
+    "low_pass",
+    "notch",
+    "scheduled",
+    "slope_low_pass",
+    "speed_difference",
+    "transfer_function",
 ]
