@@ -42,11 +42,11 @@ def conicity(y: float) -> float:
     return pair().rolling_radius_difference(y, wheel_load=WHEEL_LOAD) / (2.0 * y)
 
 
-def steady(quantity: str = "y", *, at: str | None = None, **given: Any) -> np.ndarray[Any, Any]:
-    """A quantity of the four wheelsets from the front."""
+def steady(*, at: str | None = None, **given: Any) -> np.ndarray[Any, Any]:
+    """y [m] and roll [rad] of the four wheelsets from the front, (2, 4)."""
     scenario = kl.Scenario(IRW, **{"track": CURVE, "speed": "140 km/h", **given})
     values = kl.linear.steady_state(scenario, at=at).values
-    return np.array([values[f"{name}.{quantity}"] for name in WHEELSETS])
+    return np.array([[values[f"{name}.{quantity}"] for name in WHEELSETS] for quantity in ("y", "roll")])
 
 
 @pytest.mark.parametrize("control", [SolidLike(), IRWLike(curvature="database")], ids=["S", "I"])
@@ -57,7 +57,7 @@ def test_wrong_curvature_in_the_database(control: Any, error: float, speed: str)
     """y = lambda r0 d(rho)/gamma, towards the inside for too much curvature, within 15 %."""
     right = steady(at="500 m", control=control, speed=speed)
     wrong = steady(at="500 m", control=control, speed=speed, database=CURVE.mistaken(curvature_scale=1.0 + error))
-    for y in wrong - right:
+    for y in (wrong - right)[0]:
         assert y == pytest.approx(HALF * R0 * error * RHO / conicity(y), rel=0.15)
 
 
@@ -74,9 +74,7 @@ def test_a_gyro_is_blind_to_the_database() -> None:
 def test_unequal_wheels(control: Any, mismatch: float) -> None:
     """Y = -dr/(2 gamma) within 15 %, Y the shift where wheels touch rails; the axle above them leans by dr/(2 lambda):
     y = -dr/2 (1/gamma + r0/lambda) within 8 %."""
-    given = {"control": control, "radius_mismatch": mismatch}
-    ys, rolls = steady(**given), steady("roll", **given)
-    for y, roll in zip(ys, rolls, strict=True):
+    for y, roll in steady(control=control, radius_mismatch=mismatch).T:
         gamma = conicity(y)
         assert y - R0 * roll == pytest.approx(-mismatch / (2.0 * gamma), rel=0.15)
         assert y == pytest.approx(-0.5 * mismatch * (1.0 / gamma + R0 / HALF), rel=0.08)
@@ -85,13 +83,14 @@ def test_unequal_wheels(control: Any, mismatch: float) -> None:
 def test_unequal_wheels_on_cones() -> None:
     """On cones the axle lies level, and the law has no other part: y = -dr/(2 slope) within 1 %."""
     slope, mismatch = 0.1, 3e-4
-    given = {"control": SolidLike(), "radius_mismatch": mismatch, "wheel": kl.contact.Profile.cone(slope)}
-    assert steady(**given, rail_inclination=slope) == pytest.approx(-mismatch / (2.0 * slope), rel=0.01)
-    assert steady("roll", **given, rail_inclination=slope) == pytest.approx(0.0, abs=2e-6)
+    coned = {"wheel": kl.contact.Profile.cone(slope), "rail_inclination": slope}
+    y, roll = steady(control=SolidLike(), radius_mismatch=mismatch, **coned)
+    assert y == pytest.approx(-mismatch / (2.0 * slope), rel=0.01)
+    assert roll == pytest.approx(0.0, abs=2e-6)
 
 
 def test_a_gyro_that_reads_too_much() -> None:
     """A bias d of the wheelset's gyro is a curvature of d/V too much: y = lambda r0 d/(V gamma) within 15 %."""
     bias, speed = 2e-3, 140.0 / 3.6
-    for y in steady(control=IRWLike(), sensors=Sensors(gyro=Gyro(bias=bias))):
+    for y in steady(control=IRWLike(), sensors=Sensors(gyro=Gyro(bias=bias)))[0]:
         assert y == pytest.approx(HALF * R0 * bias / speed / conicity(y), rel=0.15)
