@@ -78,7 +78,7 @@ def lower(scenario: Scenario) -> Spec:
     """
     vehicle = scenario.vehicle
     wheels = axles(vehicle)
-    control = scenario.control.lower(vehicle, scenario.track, scenario.speed) if scenario.control else None
+    control = _control(scenario)
     return {
         "name": vehicle.name,
         "gravity": GRAVITY,
@@ -114,6 +114,15 @@ def lower(scenario: Scenario) -> Spec:
             "energy": scenario.energy,
         },
     }
+
+
+def _control(scenario: Scenario) -> Spec | None:
+    """The strategy for the track that it believes in, measuring with the sensors of the scenario."""
+    if scenario.control is None:
+        return None
+    known = scenario.track if scenario.database is None else scenario.database
+    spec = scenario.control.lower(scenario.vehicle, known, scenario.speed)
+    return None if spec is None else scenario.sensors.applied(spec)
 
 
 def _track(track: Track, start: float) -> Spec:

@@ -57,8 +57,12 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, strict: bo
     Errors: SimulationError for a spec that the core refuses or has no equilibrium for, and if `strict` for a run that
     did not complete; RunCancelledError.
     """
+    spec = lower(scenario)
     externals: dict[str, Called] = getattr(scenario.control, "externals", dict)()
-    return simulate_spec(lower(scenario), progress=progress, strict=strict, externals=externals)
+    result = simulate_spec(spec, progress=progress, strict=strict, externals=externals)
+    notes = [result.attrs["notes"], *scenario.sensors.notes(spec["control"])]
+    result.attrs["notes"] = "; ".join(note for note in notes if note)
+    return result
 
 
 def prepare(scenario: Scenario) -> list[Prepared]:

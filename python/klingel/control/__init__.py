@@ -13,6 +13,16 @@ from klingel.control.own import PythonController
 from klingel.control.passive import Passive
 from klingel.control.passive_irw import PassiveIRW
 from klingel.control.secondary_yaw import SecondaryYaw
+from klingel.control.sensor import (
+    Accelerometer,
+    CurrentSensor,
+    Encoder,
+    Gyro,
+    LoadCell,
+    Position,
+    Speedometer,
+)
+from klingel.control.sensors import Sensors
 from klingel.control.slip import SlipControl
 from klingel.control.solid_like import SolidLike
 from klingel.control.state_space import DiscreteController
@@ -24,20 +34,28 @@ from klingel.control.yaw_relaxation import YawRelaxation
 
 __all__ = [
     "WHEELSETS",
+    "Accelerometer",
     "Composed",
     "ContactDesign",
+    "CurrentSensor",
     "Diagram",
     "DiscreteController",
+    "Encoder",
+    "Gyro",
     "IRWLike",
     "LateralFeedback",
+    "LoadCell",
     "Passive",
     "PassiveIRW",
     "Plant",
+    "Position",
     "PythonController",
     "SecondaryYaw",
     "Section",
+    "Sensors",
     "SlipControl",
     "SolidLike",
+    "Speedometer",
     "Timing",
     "Traction",
     "TrailedIRW",

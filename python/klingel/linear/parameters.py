@@ -84,7 +84,7 @@ def replace(scenario: Scenario, path: str, value: Quantity) -> Scenario:
                 return scenario.replace(vehicle=_record(scenario.vehicle, rest.split("."), number))
             except InputError as error:
                 raise error.within("vehicle") from None
-        case "control" | "creep_options":
+        case "control" | "creep_options" | "sensors":
             return scenario.replace(**{head: _object(getattr(scenario, head), rest.split("."), number, path)})
         case "radius_mismatch" if rest:
             return scenario.replace(radius_mismatch=_object(scenario.radius_mismatch, [rest], number, path))
@@ -105,6 +105,10 @@ def _entries(scenario: Scenario) -> Iterator[tuple[str, float, str]]:
     yield from _numbers("creep_options", scenario.creep_options)
     if scenario.control is not None:
         yield from _numbers("control", scenario.control)
+    for name, sensor in scenario.sensors.kinds():
+        for field in dataclasses.fields(sensor):
+            its_unit = sensor.unit_of(field.name)
+            yield f"sensors.{name}.{field.name}", getattr(sensor, field.name), its_unit
     for parameter in scenario.vehicle.parameters():
         path = f"vehicle.{parameter.key}"
         if isinstance(parameter.value, tuple):

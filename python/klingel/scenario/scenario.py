@@ -14,7 +14,7 @@ import numpy as np
 
 from klingel.contact import DRY_AND_CLEAN, STANDARD, CreepOptions, Profile
 from klingel.contact.checks import Kind, kind_problems
-from klingel.control import Traction
+from klingel.control import Sensors, Traction
 from klingel.errors import InputError, Problem, nearest
 from klingel.track import Adhesion, Track
 from klingel.units import Quantity, to_si
@@ -38,6 +38,10 @@ MISMATCH_MAX = 0.01
 is one per cent of it. Workshops turn wheels of one axle to within some tenths of a millimetre."""
 
 
+IDEAL = Sensors()
+"""Sensors without any error."""
+
+
 class Strategy(Protocol):
     """What steers and drives a vehicle."""
 
@@ -54,7 +58,8 @@ class Scenario:
     """One run: vehicle and track, then keywords; strings carry units, plain numbers are SI.
 
     vehicle: of the library or of a file; track: where it runs; speed: at the start, held by a slow ideal force;
-    control: strategy of `klingel.control`, None for none; friction: coefficient of all contacts; adhesion: friction
+    control: strategy of `klingel.control`, None for none; sensors: what it measures with; database: the track that it
+    knows, None for the true one (see `Track.mistaken`); friction: coefficient of all contacts; adhesion: friction
     along the track in its place; headwind: speed of the air against the vehicle, for the running resistance;
     contact: normal contact by `hertz` (an ellipse in every zone of the wheel) or `kik_piotrowski` (not Hertzian),
     equally fast; creep_law with creep_elements (along, across) for FASTSIM and its creep_options; wheel: profile of all
@@ -77,6 +82,8 @@ class Scenario:
     track: Track
     speed: float
     control: Strategy | None
+    sensors: Sensors
+    database: Track | None
     friction: float
     adhesion: Adhesion | None
     headwind: float
@@ -102,6 +109,8 @@ class Scenario:
         *,
         speed: Quantity,
         control: Strategy | None = None,
+        sensors: Sensors = IDEAL,
+        database: Track | None = None,
         friction: Quantity = FRICTION,
         adhesion: Adhesion | None = None,
         headwind: Quantity = 0.0,
@@ -125,6 +134,8 @@ class Scenario:
             "track": track,
             "speed": to_si(speed, "m/s", key="speed"),
             "control": control,
+            "sensors": sensors,
+            "database": database,
             "friction": to_si(friction, "1", key="friction"),
             "adhesion": adhesion,
             "headwind": to_si(headwind, "m/s", key="headwind"),
@@ -218,6 +229,10 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
         yield Problem("stick", scenario.stick, "is no yes or no", "give True or False")
     if scenario.friction > 1.5:
         yield Problem("friction", scenario.friction, "is no coefficient of friction", "give 0.05 to 0.6")
+    if not isinstance(scenario.sensors, Sensors):
+        yield Problem("sensors", scenario.sensors, "are none", "give klingel.control.Sensors")
+    if not isinstance(scenario.database, Track | None):
+        yield Problem("database", scenario.database, "is no track", "give a klingel.Track, or None")
     yield from _along_track_problems(scenario)
     yield from getattr(scenario.control, "problems", _fits)(scenario.vehicle)
     if not abs(scenario.rail_inclination) <= 0.1:
