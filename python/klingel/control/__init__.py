@@ -7,6 +7,7 @@ from klingel.control.composed import Composed
 from klingel.control.diagram import Diagram
 from klingel.control.discrete import Section, bilinear, lead, low_pass, notch, slope_low_pass, transfer_function
 from klingel.control.feedforward import ContactDesign
+from klingel.control.feedforward_steering import Feedforward
 from klingel.control.irw_like import IRWLike
 from klingel.control.lateral_feedback import LateralFeedback
 from klingel.control.own import PythonController
@@ -27,6 +28,7 @@ from klingel.control.slip import SlipControl
 from klingel.control.solid_like import SolidLike
 from klingel.control.state_space import DiscreteController
 from klingel.control.steering import hold_equal_torques
+from klingel.control.torque_vectoring import TorqueVectoring
 from klingel.control.traction import Traction
 from klingel.control.trailed_irw import TrailedIRW
 from klingel.control.yaw_moment import YawMoment
@@ -41,6 +43,7 @@ __all__ = [
     "Diagram",
     "DiscreteController",
     "Encoder",
+    "Feedforward",
     "Gyro",
     "IRWLike",
     "LateralFeedback",
@@ -57,6 +60,7 @@ __all__ = [
     "SolidLike",
     "Speedometer",
     "Timing",
+    "TorqueVectoring",
     "Traction",
     "TrailedIRW",
     "Wheelset",
