@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from klingel.cli import linear
+from klingel.cli import design, linear
 from klingel.cli.output import print_table
 
 app = typer.Typer(
@@ -24,6 +24,7 @@ app.add_typer(study, name="study")
 app.command()(linear.modes)
 app.command()(linear.rootlocus)
 app.command("critical-speed")(linear.critical_speed)
+app.command()(design.design)
 
 
 def _version(wanted: bool) -> None:

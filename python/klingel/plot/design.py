@@ -4,8 +4,8 @@ What is beyond a limit is hatched as well as coloured, so that grey prints keep 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import matplotlib
 import numpy as np
@@ -31,6 +31,9 @@ REACH = (-3.2, 1.4, 2.1)
 MOST_DAMPING = 20.0
 """Damping ratio [%] from which a place is as good as any other."""
 
+DARK = 5.0
+"""Damping ratio [%] below which a cell is so dark that its number is white."""
+
 
 def loop_bode(shown: Sequence[Shown], *, title: str) -> Figure:
     """Bode diagram of a loop at up to five speeds, with |L| = 1, -180 degrees and the frequencies of its margins.
@@ -47,15 +50,15 @@ def loop_bode(shown: Sequence[Shown], *, title: str) -> Figure:
         size.axhline(1.0, color=INK, lw=0.9)
         low = min(float(np.abs(curve.values).min()) for curve in curves)
         size.set_ylim(bottom=max(low, 2e-3))
+        _in_one_turn(phase, shown)
         for turn in (-540.0, -180.0, 180.0, 540.0):
             if phase.get_ylim()[0] - 5.0 <= turn <= phase.get_ylim()[1] + 5.0:
                 phase.axhline(turn, color=INK, lw=0.9)
-        for each, curve, (color, _) in zip(shown, curves, LINES, strict=False):
-            degrees = np.degrees(np.unwrap(np.angle(curve.values)))
-            at = [(each.margins.gain_frequency, size, "v"), (each.margins.phase_frequency, phase, "o")]
-            for frequency, axis, marker in at:
+        for each, curve, line, (color, _) in zip(shown, curves, phase.lines, LINES, strict=False):
+            at = [(each.margins.gain_frequency, size, np.abs(curve.values), "v")]
+            at += [(each.margins.phase_frequency, phase, np.asarray(line.get_ydata()), "o")]
+            for frequency, axis, values, marker in at:
                 if LOWEST <= frequency <= HIGHEST:
-                    values = np.abs(curve.values) if axis is size else degrees
                     y = float(np.interp(frequency, curve.frequencies, values))
                     axis.plot(frequency, y, marker, color=color, mfc="white", ms=5.0, mew=1.2, zorder=4)
         handle = matplotlib.lines.Line2D
@@ -63,8 +66,18 @@ def loop_bode(shown: Sequence[Shown], *, title: str) -> Figure:
             handle([], [], ls="", marker="v", mfc="white", mec=INK, ms=5.0, label="gain margin"),
             handle([], [], ls="", marker="o", mfc="white", mec=INK, ms=5.0, label="phase margin"),
         ]
-        phase.legend(handles=marks, loc="best", handletextpad=0.3)
+        phase.legend(handles=marks, loc="lower left", handletextpad=0.3)
     return figure
+
+
+def _in_one_turn(phase: Axes, shown: Sequence[Shown]) -> None:
+    """Moves the phases by whole turns to between -360 and 0 degrees at their phase margins, so that they compare."""
+    for line, each in zip(phase.lines, shown, strict=True):
+        f, degrees = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
+        at = each.margins.phase_frequency if LOWEST <= each.margins.phase_frequency <= HIGHEST else 1.0
+        line.set_ydata(degrees - 360.0 * math.ceil(float(np.interp(at, f, degrees)) / 360.0))
+    phase.relim()
+    phase.autoscale_view()
 
 
 def nyquist(shown: Sequence[Shown], *, title: str) -> Figure:
@@ -85,7 +98,7 @@ def nyquist(shown: Sequence[Shown], *, title: str) -> Figure:
         for each, (color, line) in zip(shown, LINES, strict=False):
             axis.plot(each.response.real, each.response.imag, color=color, ls=line, lw=1.5, label=_speed(each))
         axis.plot(-1.0, 0.0, "P", color=INK, ms=8.0, zorder=5)
-        axis.annotate("-1", (-1.0, 0.0), xytext=(6, 7), textcoords="offset points")
+        axis.annotate("-1", (-1.0, 0.0), xytext=(-19, 9), textcoords="offset points")
         axis.axhline(0.0, color=INK, lw=0.6)
         axis.axvline(0.0, color=INK, lw=0.6)
         axis.set_xlim(REACH[0], REACH[1])
@@ -122,7 +135,7 @@ def stability_map(check: Check, *, title: str) -> Figure:
     """
     frictions = sorted(check.table["friction"].unique())
     straight = check.table[np.isinf(check.table["radius"])]
-    columns = [*_conicities(straight), *(["curve"] if len(straight) < len(check.table) else [])]
+    columns: list[float | str] = [*_conicities(straight), *(["curve"] if len(straight) < len(check.table) else [])]
     speeds = sorted(check.table["speed"].unique())
     with styled():
         width = 1.6 + len(frictions) * (0.5 + 0.72 * len(columns))
@@ -157,25 +170,26 @@ def _cells(axis: Axes, rows: pd.DataFrame, columns: Sequence[float | str], speed
     labels = [c if isinstance(c, str) else "profiles" if math.isnan(c) else f"{c:g}" for c in columns]
     axis.set_xticks(range(len(columns)), labels, fontsize=7.5)
     axis.tick_params(length=0.0)
-    for row in rows.itertuples():
-        if not math.isinf(row.radius):
+    for row in rows.to_dict("records"):
+        if not math.isinf(row["radius"]):
             i = columns.index("curve")
         else:
-            same = (k for k, c in enumerate(columns) if not isinstance(c, str) and _same(c, row.conicity))
+            same = (k for k, c in enumerate(columns) if not isinstance(c, str) and _same(c, row["conicity"]))
             i = next(same)
-        _cell(axis, i, speeds.index(row.speed), str(row.outcome), 100.0 * row.damping, row.growth)
+        _cell(axis, i, speeds.index(row["speed"]), row)
 
 
 def _same(one: float, other: float) -> bool:
     return one == other or (math.isnan(one) and math.isnan(other))
 
 
-def _cell(axis: Axes, i: int, j: int, outcome: str, damping: float, growth: float) -> None:
+def _cell(axis: Axes, i: int, j: int, row: Mapping[Any, Any]) -> None:
+    outcome, damping, growth = row["outcome"], 100.0 * row["damping"], row["growth"]
     box = Rectangle((i - 0.5, j - 0.5), 1.0, 1.0, ec="white", lw=1.0)
     color = INK
     if outcome == "stable":
         box.set_facecolor(_shade(damping))
-        words, color = f"{damping:.1f}", "white" if damping < 0.4 * MOST_DAMPING else INK
+        words, color = f"{damping:.1f}", "white" if damping < DARK else INK
     else:
         box.set(facecolor="white", edgecolor="#D55E00", hatch="////", lw=0.6)
         words = f"{growth:.2g}" if outcome == "unstable" else "none"
@@ -186,4 +200,5 @@ def _cell(axis: Axes, i: int, j: int, outcome: str, damping: float, growth: floa
 
 def _shade(damping: float) -> tuple[float, float, float, float]:
     """Of a damping ratio [%]: dark for little."""
-    return matplotlib.colormaps["cividis"](min(damping / MOST_DAMPING, 1.0) ** 0.5)
+    red, green, blue, alpha = matplotlib.colormaps["cividis"](min(damping / MOST_DAMPING, 1.0) ** 0.5)
+    return float(red), float(green), float(blue), float(alpha)
