@@ -5,9 +5,11 @@ from klingel.design.check import Check, check
 from klingel.design.limits import Limits, judged, limits
 from klingel.design.loops import Loop, loops
 from klingel.design.margins import Margins, margins, margins_of
+from klingel.design.tune import Design, speed_loop, steering_loop, torque_loop, tune, yaw_moment_loop
 
 __all__ = [
     "Check",
+    "Design",
     "Limits",
     "Loop",
     "Margins",
@@ -17,4 +19,9 @@ __all__ = [
     "loops",
     "margins",
     "margins_of",
+    "speed_loop",
+    "steering_loop",
+    "torque_loop",
+    "tune",
+    "yaw_moment_loop",
 ]

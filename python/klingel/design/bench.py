@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from klingel.design.check import CONICITIES, FRICTIONS, Check, check
 from klingel.design.grid import whole
 from klingel.design.limits import judged
-from klingel.design.loops import Loop, loops
-from klingel.design.margins import COLUMNS, Margins, margins_of_all, row
+from klingel.design.loops import loops
+from klingel.design.margins import COLUMNS, Shown, margins_of_all, row
 from klingel.linear.sweep import Sweep
 from klingel.scenario import Scenario
 from klingel.track.cases import perez2004
@@ -22,19 +21,6 @@ from klingel.units import Quantity, to_si
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-
-@dataclass(frozen=True, eq=False)
-class Shown:
-    """A loop at a speed: its frequencies (f) [Hz], its response L (f), its margins."""
-
-    loop: Loop
-    frequencies: Real
-    response: Complex
-    margins: Margins
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +57,7 @@ def examine(
     sweep = Sweep(at=at)
     rows: list[dict[str, object]] = []
     shown: dict[str, list[Shown]] = {}
+    kinds: dict[str, str] = {}
     fast = [case.speed for case in perez2004()] if speeds is None else [to_si(v, "m/s", key="speeds") for v in speeds]
     for speed in fast:
         step(f"margins at {3.6 * speed:.0f} km/h")
@@ -78,23 +65,25 @@ def examine(
         f, S = whole(found[0].closed) if found else (np.zeros(0), np.zeros((0, 0, 0), dtype=np.complex128))
         for loop, edge in zip(found, margins_of_all(found), strict=True):
             rows.append(row(loop, edge))
-            shown.setdefault(loop.name, []).append(Shown(loop, f, 1.0 / S[:, loop.index, loop.index] - 1.0, edge))
+            L = 1.0 / S[:, loop.index, loop.index] - 1.0
+            kinds[loop.name] = loop.kind
+            shown.setdefault(loop.name, []).append(Shown(loop.name, speed, f, L, edge))
     step("stability over speed, conicity and friction")
     table = pd.DataFrame(rows, columns=["loop", "kind", "speed", *COLUMNS])
     return Bench(
         scenario=scenario,
         table=judged(scenario, table),
-        worst=_worst(shown),
+        worst=_worst(shown, kinds),
         check=check(scenario, speeds=fast, conicities=conicities, frictions=frictions),
     )
 
 
-def _worst(shown: dict[str, list[Shown]]) -> dict[str, tuple[Shown, ...]]:
+def _worst(shown: dict[str, list[Shown]], kinds: dict[str, str]) -> dict[str, tuple[Shown, ...]]:
     """Of every kind the loop with the least disk margin anywhere; an unstable one is the worst."""
     chosen: dict[str, tuple[float, tuple[Shown, ...]]] = {}
-    for each in shown.values():
-        least = min(-np.inf if not s.margins.stable else s.margins.disk for s in each)
-        kind = each[0].loop.kind
+    for name, each in shown.items():
+        least = min(s.margins.disk if s.margins.stable else -np.inf for s in each)
+        kind = kinds[name]
         if kind not in chosen or least < chosen[kind][0]:
             chosen[kind] = least, tuple(each)
     return {kind: group for kind, (_, group) in chosen.items()}

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from klingel.design.bench import Shown
     from klingel.design.check import Check
+    from klingel.design.margins import Shown
 
 LOWEST, HIGHEST = 0.05, 200.0
 """Frequencies of Bode diagrams [Hz]."""
@@ -125,7 +125,7 @@ def _kept_free(axis: Axes, alpha: float, sensitivity: float) -> None:
 
 def _speed(each: Shown) -> str:
     unstable = "" if each.margins.stable else ", unstable"
-    return f"{3.6 * each.loop.speed:.0f} km/h{unstable}"
+    return f"{3.6 * each.speed:.0f} km/h{unstable}"
 
 
 def stability_map(check: Check, *, title: str) -> Figure:

@@ -117,7 +117,7 @@ def _loops(bench: Bench) -> list[Section]:
     """A section a kind: its table, and diagrams of its worst loop."""
     sections = []
     for kind, shown in bench.worst.items():
-        name = shown[0].loop.name
+        name = shown[0].name
         rows = readable_margins(bench.table[bench.table["kind"] == kind])
         pictures = (
             _picture(
