@@ -12,6 +12,8 @@ import typer
 from klingel.cli import linear
 from klingel.cli.compare import compare
 from klingel.cli.output import kept, print_table
+from klingel.cli import design, linear
+from klingel.cli.output import print_table
 
 app = typer.Typer(
     name="klingel",
@@ -26,6 +28,7 @@ app.command()(linear.modes)
 app.command()(linear.rootlocus)
 app.command("critical-speed")(linear.critical_speed)
 app.command()(compare)
+app.command()(design.design)
 
 
 def _version(wanted: bool) -> None:

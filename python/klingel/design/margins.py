@@ -71,6 +71,17 @@ class Margins:
         return 2.0 * math.atan(0.5 * self.disk)
 
 
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """A loop as figures draw it: name, speed [m/s], frequencies (f) [Hz], response L (f), margins."""
+
+    name: str
+    speed: float
+    frequencies: Real
+    response: Complex
+    margins: Margins
+
+
 def margins_of(loop: Loop) -> Margins:
     """Margins of one loop, all others closed.
 
