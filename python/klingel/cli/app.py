@@ -12,6 +12,7 @@ import typer
 from klingel.cli import linear
 from klingel.cli.compare import compare
 from klingel.cli.output import kept, print_table
+from klingel.cli.robustness import robustness
 
 app = typer.Typer(
     name="klingel",
@@ -26,6 +27,7 @@ app.command()(linear.modes)
 app.command()(linear.rootlocus)
 app.command("critical-speed")(linear.critical_speed)
 app.command()(compare)
+app.command()(robustness)
 
 
 def _version(wanted: bool) -> None:

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 import klingel
-from klingel import library, result
+from klingel import result
 from klingel.assess import curving
 from klingel.assess.header import course_of
 from klingel.core import core
 from klingel.errors import InputError, SimulationError
 from klingel.lower import lower
-from klingel.scenario import Scenario, Strategy
+from klingel.scenario import Scenario
 from klingel.study import robustness_output as output
 from klingel.study.folder import conclude, study_folder
 from klingel.study.robustness_effects import EFFECTS, changed
@@ -28,7 +28,6 @@ from klingel.study.robustness_rows import Rows
 from klingel.study.runner import run_all
 from klingel.study.screen import console as default_console
 from klingel.study.screen import prepare
-from klingel.track.cases import perez2004
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,9 +42,6 @@ FIGURES = (
 """What is kept of each run, of `klingel.assess.COLUMNS`."""
 
 WORDS = ("flange_contact", "outcome")
-
-STEP = 1e-3
-"""Of the integration [s]: as in the variants of the study of the five curves."""
 
 INTERVAL = 2e-3
 """Longest interval of the samples that `klingel.assess.curving` takes [s]."""
@@ -124,23 +120,6 @@ def recorded(scenario: Scenario) -> Scenario:
     """The scenario with nothing recorded beyond what is assessed: 500 Hz if the step divides it, no energy."""
     interval = max(1, int(INTERVAL / scenario.step * (1.0 + 1e-9))) * scenario.step
     return scenario.replace(record_interval=interval, energy=False)
-
-
-def scenario_of(radius: float, control: Strategy | None, *, vehicle: str | None = None) -> Scenario:
-    """One of the five curves of Perez et al. (2004) by its radius [m]; without a strategy the passive coach runs it.
-
-    Errors: InputError for another radius, with those there are.
-
-    >>> round(3.6 * scenario_of(800.0, None).speed)
-    176
-    """
-    cases = {case.radius: case for case in perez2004()}
-    if radius not in cases:
-        listed = ", ".join(f"R{known:.0f}" for known in cases)
-        raise InputError.single("curve", radius, "is not in the study of the five curves", remedy=f"use {listed}")
-    name = vehicle or ("manchester_coach" if control is None else "mechatronic_irw")
-    case = cases[radius]
-    return Scenario(library.vehicle(name), case.track, speed=case.speed, control=control, step=STEP)
 
 
 def run(

@@ -120,11 +120,13 @@ def believed(scenario: Scenario) -> Scenario:
 def delay(scenario: Scenario, value: float) -> Scenario:
     """Measurements later by that [s], in whole samples."""
     held = scenario.control
-    strategy = held.strategy if isinstance(held, DesignedFor) else held
-    timing = strategy.timing  # type: ignore[union-attr]
+    strategy: Any = held.strategy if isinstance(held, DesignedFor) else held
+    timing = strategy.timing
     late = dataclasses.replace(timing, sensor_samples=timing.sensor_samples + round(value / timing.sample_time))
-    slowed = dataclasses.replace(strategy, timing=late)  # type: ignore[type-var]
-    return scenario.replace(control=dataclasses.replace(held, strategy=slowed) if held is not strategy else slowed)
+    slowed = dataclasses.replace(strategy, timing=late)
+    return scenario.replace(
+        control=dataclasses.replace(held, strategy=slowed) if isinstance(held, DesignedFor) else slowed
+    )
 
 
 EFFECTS: Mapping[str, Effect] = {
