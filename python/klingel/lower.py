@@ -78,7 +78,7 @@ def lower(scenario: Scenario) -> Spec:
     """
     vehicle = scenario.vehicle
     wheels = axles(vehicle)
-    control = scenario.control.lower(vehicle, scenario.track, scenario.speed) if scenario.control else None
+    control = _control(scenario)
     return {
         "name": vehicle.name,
         "gravity": GRAVITY,
@@ -87,7 +87,7 @@ def lower(scenario: Scenario) -> Spec:
         "adhesion": _adhesion(scenario.adhesion),
         "bodies": [*_bodies(vehicle), *(_wheelset(vehicle, axle) for axle in wheels)],
         "contact_pairs": [_pair(scenario)],
-        "wheels": [_wheel(vehicle, axle, side, scenario.friction) for axle in wheels for side, _ in SIDES],
+        "wheels": list(_wheels(scenario, wheels)),
         "creep": {
             "law": scenario.creep_law,
             "elements": list(scenario.creep_elements),
@@ -114,6 +114,15 @@ def lower(scenario: Scenario) -> Spec:
             "energy": scenario.energy,
         },
     }
+
+
+def _control(scenario: Scenario) -> Spec | None:
+    """The strategy for the track that it believes in, measuring with the sensors of the scenario."""
+    if scenario.control is None:
+        return None
+    known = scenario.track if scenario.database is None else scenario.database
+    spec = scenario.control.lower(scenario.vehicle, known, scenario.speed)
+    return None if spec is None else scenario.sensors.applied(spec)
 
 
 def _track(track: Track, start: float) -> Spec:
@@ -178,10 +187,19 @@ def _pair(scenario: Scenario) -> Spec:
     }
 
 
-def _wheel(vehicle: Vehicle, axle: Axle, side: str, friction: float) -> Spec:
-    rotor = side if vehicle.independent_wheels else "spin"
-    name = f"{axle.name}.{side}"
-    return {"name": name, "body": axle.name, "rotor": rotor, "side": side, "pair": 0, "friction": friction}
+def _wheels(scenario: Scenario, wheels: tuple[Axle, ...]) -> Iterator[Spec]:
+    """Each wheel has half of what the right one is larger by than the left one."""
+    for axle, mismatch in zip(wheels, scenario.radius_mismatch, strict=True):
+        for side, sign in SIDES:
+            yield {
+                "name": f"{axle.name}.{side}",
+                "body": axle.name,
+                "rotor": side if scenario.vehicle.independent_wheels else "spin",
+                "side": side,
+                "pair": 0,
+                "friction": scenario.friction,
+                "radius_offset": 0.5 * sign * mismatch,
+            }
 
 
 def _joint(a: str, b: str, x: float, y: float, height: float) -> Spec:

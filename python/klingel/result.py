@@ -56,7 +56,11 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, strict: bo
     Errors: SimulationError for a spec that the core refuses or has no equilibrium for, and if `strict` for a run that
     did not complete; RunCancelledError.
     """
-    return simulate_spec(lower(scenario), progress=progress, strict=strict)
+    spec = lower(scenario)
+    result = simulate_spec(spec, progress=progress, strict=strict)
+    notes = [result.attrs["notes"], *scenario.sensors.notes(spec["control"])]
+    result.attrs["notes"] = "; ".join(note for note in notes if note)
+    return result
 
 
 def prepare(scenario: Scenario) -> list[Prepared]:

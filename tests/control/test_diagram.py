@@ -65,3 +65,37 @@ def test_a_number_of_samples_of_zero_needs_no_block() -> None:
     d = Diagram(sample_time=TS)
     assert d.delay("none", d.measure("x"), 0) == "x"
     assert d.spec()["blocks"] == []
+
+
+def test_rounding_and_noise_are_nil_in_a_response_and_a_hold_is_its_mean() -> None:
+    d = Diagram(sample_time=TS)
+    rounded = d.quantise("rounded", d.measure("x"), 0.5)
+    noisy = d.sum("noisy", {rounded: 2.0, d.noise("noise", 0.1, 3): 1.0})
+    d.command("plant", d.hold("held", noisy, 20))
+    response = controller_response(d.spec(), {}, SLOW)[:, 0, 0]
+    # a mean over 20 samples lags by half of the 19 intervals between them
+    width = 0.5 * SLOW * TS
+    expected = 2.0 * np.sin(20.0 * width) / (20.0 * np.sin(width)) * np.exp(-19j * width)
+    np.testing.assert_allclose(response, expected, rtol=1e-12)
+
+
+def test_a_state_space_of_two_outputs_responds_as_its_matrices_say() -> None:
+    d = Diagram(sample_time=TS)
+    inputs = [d.sum("twice", {d.measure("x"): 2.0}), d.measure("y")]
+    lag, direct = d.state_space(
+        "both", inputs, ["lag", "direct"], [[0.9]], [[0.1, 0.0]], [[1.0], [0.0]], [[0.0, 0.0], [0.0, 3.0]]
+    )
+    d.command("lag", lag)
+    d.command("product", d.product("product", lag, direct))
+    response = controller_response(d.spec(), {"x": 1.0, "y": 5.0}, SLOW)
+    expected = 0.2 / (np.exp(1j * SLOW * TS) - 0.9)
+    np.testing.assert_allclose(response[:, 0, 0], expected, rtol=1e-12)
+    np.testing.assert_allclose(response[:, 1, 0], 15.0 * expected, rtol=1e-12)
+    np.testing.assert_allclose(response[:, 1, 1], 6.0, rtol=1e-12)
+
+
+def test_a_state_space_without_states_is_its_matrix() -> None:
+    d = Diagram(sample_time=TS)
+    (out,) = d.state_space("gains", [d.measure("x"), d.measure("y")], ["out"], [], [], [[]], [[2.0, -1.0]])
+    d.command("plant", out)
+    np.testing.assert_allclose(controller_response(d.spec(), {}, SLOW)[:, 0], np.tile([2.0, -1.0], (3, 1)))

@@ -242,3 +242,22 @@ def test_friction_and_adhesion_must_not_contradict_each_other() -> None:
     with pytest.raises(InputError, match="contradict"):
         scenario(friction=0.2, adhesion=Adhesion(base=0.3))
     assert scenario(friction=0.3, adhesion=Adhesion(base=0.3)).friction == 0.3
+
+
+@pytest.mark.parametrize(
+    ("given", "text"),
+    [("0.5 mm", '"0.5 mm"'), (["0.5 mm", 0.0, "-0.1 mm", 0.0], '["0.5 mm", 0.0, "-0.1 mm", 0.0]')],
+)
+def test_radius_mismatch_is_one_or_four(tmp_path: Path, given: Any, text: str) -> None:
+    made = scenario(radius_mismatch=given)
+    file = f'vehicle = "manchester_coach"\nspeed = "108 km/h"\nradius_mismatch = {text}\ntrack.straight = "500 m"'
+    assert read(tmp_path, file) == made
+    wheels = {wheel["name"]: wheel["radius_offset"] for wheel in lower(made)["wheels"]}
+    for name, mismatch in zip(("1.wheelset1", "1.wheelset2", "2.wheelset1"), made.radius_mismatch, strict=False):
+        assert wheels[f"bogie{name}.right"] == 0.5 * mismatch == -wheels[f"bogie{name}.left"]
+
+
+@pytest.mark.parametrize("given", ["0.5 m", [1e-4, 1e-4], "0.5 s", None])
+def test_a_bad_radius_mismatch_is_named(given: Any) -> None:
+    with pytest.raises(InputError, match=r"radius_mismatch.*give"):
+        scenario(radius_mismatch=given)

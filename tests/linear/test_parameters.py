@@ -30,6 +30,7 @@ def test_every_number_survives_its_own_replacement(scenario: kl.Scenario) -> Non
         ("conicity", 0.1, "1"),
         ("vehicle.secondary.lateral_damper.damping", 4e4, "N s/m"),
         ("vehicle.lateral_stop.force.3", 2000.0, "N"),
+        ("radius_mismatch.2", 5e-4, "m"),
         ("control.frequency", 2.0, "Hz"),
         ("control.timing.sample_time", 2e-3, "s"),
         ("control.timing.sensor_samples", 2.0, "1"),
@@ -39,7 +40,8 @@ def test_replaces_that_number_alone(scenario: kl.Scenario, path: str, value: flo
     changed = parameters.replace(scenario, path, value)
     assert parameters.get(changed, path) == value
     assert parameters.unit(changed, path) == unit
-    differing = [p for p in parameters.names(scenario) if parameters.get(changed, p) != parameters.get(scenario, p)]
+    common = set(parameters.names(scenario)) & set(parameters.names(changed))
+    differing = [p for p in common if parameters.get(changed, p) != parameters.get(scenario, p)]
     assert set(differing) <= {path}
 
 
@@ -69,3 +71,10 @@ def test_refuses(scenario: kl.Scenario, path: str, value: float | str, said: str
 def test_only_cones_have_a_conicity(scenario: kl.Scenario) -> None:
     with pytest.raises(InputError, match="coned wheels"):
         parameters.get(scenario, "conicity")
+
+
+def test_all_wheelsets_may_change_together(scenario: kl.Scenario) -> None:
+    one = parameters.replace(scenario, "radius_mismatch.0", "0.5 mm")
+    assert one.radius_mismatch == (5e-4, 0.0, 0.0, 0.0)
+    assert "radius_mismatch" not in parameters.names(one)
+    assert parameters.replace(one, "radius_mismatch", "0.2 mm").radius_mismatch == (2e-4,) * 4

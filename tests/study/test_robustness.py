@@ -148,8 +148,40 @@ def test_creep_reduction_keeps_fastsim_and_else_takes_polach() -> None:
 def test_errors_of_a_strategy_are_left_out_where_there_is_none() -> None:
     chosen = robustness.plan_of(passive(), runs=1).chosen
     assert "friction" in chosen
-    assert not any(EFFECTS[name].steers for name in chosen)
-    assert list(robustness.plan_of(active(), runs=1).chosen) == list(EFFECTS)
+    assert not any(EFFECTS[name].through for name in chosen)
+    by_gyro = robustness.plan_of(active(), runs=1)
+    assert by_gyro.left_out == ("curvature_error", "position_error", "load_cell_bias")
+    database = active().replace(control=control.IRWLike(curvature="database"))
+    assert robustness.plan_of(database, runs=1).left_out == ("load_cell_bias",)
+    with pytest.raises(InputError, match="are not felt by this strategy"):
+        robustness.plan_of(passive(), chosen=inputs(only=["delay"]))
+
+
+def test_errors_reach_the_sensors_and_the_database() -> None:
+    given = {
+        "delay": 12.4e-3,
+        "encoder_noise": 0.01,
+        "gyro_bias": 1e-3,
+        "position_error": -30.0,
+        "curvature_error": 0.1,
+    }
+    made = changed(active(), given | {"radius_mismatch": 5e-4}, seed=5)
+    sensors = made.sensors
+    assert sensors.seed == 5
+    assert (sensors.encoder.noise, sensors.encoder.delay) == (0.01, 0.012)  # type: ignore[union-attr]
+    assert (sensors.gyro.bias, sensors.position.bias) == (1e-3, -30.0)  # type: ignore[union-attr]
+    assert sensors.current is None
+    assert made.radius_mismatch == (5e-4,) * 4
+    assert made.database is not None
+    assert float(made.database.curvature(130.0)) == pytest.approx(1.1 * float(CURVE.curvature(130.0)))
+    lower(made)
+
+
+def test_every_drawn_run_has_its_own_noise_and_the_others_share_one() -> None:
+    plan = robustness.plan_of(active(), runs=2)
+    seeds = [plan.of(name).sensors.seed for name in ("drawn_0", "drawn_1", "nominal", "alone_encoder_noise_4")]
+    assert len(set(seeds[:2])) == 2
+    assert seeds[2] == seeds[3] == 0
 
 
 def test_a_plan_needs_one_curve() -> None:

@@ -109,7 +109,22 @@ pub(crate) fn settle_on_rails(m: &Model, x: &mut [f64]) {
     for body in &m.bodies {
         x[body.state + 2] += low;
     }
+    lean_on_unequal_wheels(m, x);
     roll_where_they_touch(m, low, x);
+}
+
+/// Lifts and rolls the axles of wheels that are not as large as their tables say: on the same rails, the side of the
+/// larger wheel stands higher by what it is larger by, which is more than a table is deep.
+fn lean_on_unequal_wheels(m: &Model, x: &mut [f64]) {
+    for (index, body) in m.bodies.iter().enumerate() {
+        let wheels = || m.wheels.iter().filter(|w| w.body == index);
+        let count = wheels().count();
+        if count > 0 {
+            x[body.state + 2] -= wheels().map(|w| w.radius_offset).sum::<f64>() / count as f64;
+            let bases: f64 = wheels().map(|w| w.half_tape_distance).sum();
+            x[body.state + 3] -= wheels().map(|w| w.sign * w.radius_offset).sum::<f64>() / bases;
+        }
+    }
 }
 
 /// Turns the wheels, and the motors on them, as their radius where they touch wants it: half a per cent of slip saturates
@@ -119,7 +134,7 @@ fn roll_where_they_touch(m: &Model, sink: f64, x: &mut [f64]) {
         let Ok(patches) = wheel.table.patches(0.0, sink, 0.0, 0.0) else { continue };
         let load: f64 = patches.iter().map(|p| p.normal_force).sum();
         if load > 0.0 {
-            let radius = patches.iter().map(|p| p.normal_force * p.radius).sum::<f64>() / load;
+            let radius = patches.iter().map(|p| p.normal_force * p.radius).sum::<f64>() / load + wheel.radius_offset;
             x[m.rotors[wheel.rotor].state] = m.speed / radius;
             for drive in m.drives.iter().filter(|d| d.rotor == wheel.rotor) {
                 x[drive.state] = m.speed / radius / drive.law.gear_ratio;

@@ -135,6 +135,7 @@ fn control(wiring: &Wiring, settled: &Memory<f64>, measured: &[f64]) -> Result<L
     let diagram = &wiring.diagram;
     let (n, inputs, commands) = (settled.states.len(), measured.len(), wiring.driven.len());
     let mut memory = diagram.memory::<Wide>();
+    memory.linear = true;
     let mut given = vec![Wide::default(); inputs];
     let mut a = vec![0.0; n * n];
     let (mut b, mut c, mut d) = (vec![0.0; n * inputs], vec![0.0; commands * n], vec![0.0; commands * inputs]);

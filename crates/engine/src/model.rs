@@ -159,8 +159,9 @@ pub struct Wheel {
     pub friction: f64,
     /// Half distance of the tape circles \[m\].
     pub half_tape_distance: f64,
-    /// Nominal radius \[m\].
+    /// Radius at the tape circle: the nominal one of its contact table and what this wheel is larger by \[m\].
     pub radius: f64,
+    pub radius_offset: f64,
     /// Point on the axle line in the tape-circle plane, from the centre of mass, body frame \[m\].
     pub centre: [f64; 3],
     /// First of its transient creepages, along and across, where wheels stick.

@@ -193,6 +193,9 @@ pub struct WheelSpec {
     /// Index into `contact_pairs`.
     pub pair: usize,
     pub friction: f64,
+    /// By how much this wheel is larger than the radius of its pair, with the same profile \[m\].
+    #[serde(default)]
+    pub radius_offset: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -6,10 +6,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from klingel.control.discrete import Section
 
 Gain = float | str
 """A number, or the name of the signal that carries it."""
+
+Matrix = Sequence[Sequence[float]] | NDArray[np.float64]
+"""A matrix by rows."""
 
 BEYOND = 1e12
 """Larger than any signal in SI units: a limit that is none."""
@@ -104,6 +110,47 @@ class Diagram:
     def delay(self, name: str, signal: str, samples: int) -> str:
         """The signal some samples ago; the signal itself for none."""
         return self._add("delay", name, input=signal, samples=samples) if samples else signal
+
+    def state_space(
+        self,
+        name: str,
+        inputs: Sequence[str],
+        outputs: Sequence[str],
+        a: Matrix,
+        b: Matrix,
+        c: Matrix,
+        d: Matrix,
+    ) -> tuple[str, ...]:
+        """x+ = a x + b u, y = c x + d u of several signals; the signals of its outputs.
+
+        a: (n, n); b: (n, inputs); c: (outputs, n); d: (outputs, inputs); no pole at z = 1, use `pi`.
+
+        >>> d = Diagram(sample_time=1e-3)
+        >>> both = [d.measure("body.speed"), d.measure("body.yaw_rate")]
+        >>> d.state_space("lag", both, ["slow"], [[0.9]], [[0.1, 0.2]], [[1.0]], [[0.0, 0.0]])
+        ('slow',)
+        """
+        rows = {key: [[float(x) for x in row] for row in m] for key, m in zip("abcd", (a, b, c, d), strict=True)}
+        self._add("state_space", name, inputs=list(inputs), outputs=list(outputs), **rows)
+        return tuple(outputs)
+
+    def quantise(self, name: str, signal: str, step: float) -> str:
+        """The multiple of a step nearest to a signal; in linear models and steady states the signal itself."""
+        return self._add("quantise", name, input=signal, step=step)
+
+    def noise(self, name: str, std: float, seed: int) -> str:
+        """White Gaussian noise of a standard deviation; in linear models and steady states nil.
+
+        Every draw is made from the seed (0 or above) and the number of its sample alone: runs repeat bit by bit.
+        """
+        return self._add("noise", name, std=std, seed=seed)
+
+    def hold(self, name: str, signal: str, samples: int) -> str:
+        """A signal as it was at the last sample whose number is a multiple of `samples`.
+
+        In linear models the mean over as many samples, which does not depend on when they are taken.
+        """
+        return self._add("hold", name, input=signal, samples=samples)
 
     def lookup(self, name: str, signal: str, x: Sequence[float], y: Sequence[float], *, edge: str = "hold") -> str:
         """Linear interpolation of y(x); outside, the end value (`hold`) or an outcome of the run (`error`)."""

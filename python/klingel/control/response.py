@@ -35,7 +35,8 @@ def controller_response(
     """Commands over measurements at each angular frequency: array (omega, commands, measurements).
 
     spec: block diagram as `Diagram.spec` gives it; operating: measurements at the operating point, 0 where not given
-    (SI); omega: [rad/s], below the Nyquist frequency. Limits are taken as inactive at the operating point.
+    (SI); omega: [rad/s], below the Nyquist frequency. Limits are taken as inactive at the operating point; blocks that
+    round, hold or make noise as linear models take them.
 
     >>> from klingel.control.diagram import Diagram
     >>> d = Diagram(sample_time=1e-3)
@@ -47,6 +48,9 @@ def controller_response(
     point = _Point(spec["measurements"], operating, len(omega))
     back = np.exp(-1j * np.asarray(omega) * spec["sample_time"])
     for block in spec["blocks"]:
+        if block["kind"] == "state_space":
+            _state_space(block, point, back)
+            continue
         value, row = _LAWS[block["kind"]](block, point, back, spec["sample_time"])
         point.value[block["name"]], point.row[block["name"]] = value, row
     return np.stack([point.row[command["signal"]] for command in spec["commands"]], axis=1)
@@ -104,6 +108,29 @@ def _delay(block: Mapping[str, Any], p: _Point, back: Row, ts: float) -> tuple[f
     return p.value[block["input"]], p.row[block["input"]] * (back ** block["samples"])[:, None]
 
 
+def _noise(block: Mapping[str, Any], p: _Point, back: Row, ts: float) -> tuple[float, Row]:
+    return 0.0, np.zeros_like(next(iter(p.row.values())))
+
+
+def _hold(block: Mapping[str, Any], p: _Point, back: Row, ts: float) -> tuple[float, Row]:
+    """The mean of the phases in which a hold may take its samples."""
+    mean = np.mean([back**i for i in range(block["samples"])], axis=0)
+    return p.value[block["input"]], p.row[block["input"]] * mean[:, None]
+
+
+def _state_space(block: Mapping[str, Any], p: _Point, back: Row) -> None:
+    """Its outputs: c (z - a)^-1 b + d at every frequency, and at z = 1 for their values."""
+    n, m, outputs = len(block["a"]), len(block["inputs"]), len(block["outputs"])
+    a, b = np.reshape(block["a"], (n, n)), np.reshape(block["b"], (n, m))
+    c, d = np.reshape(block["c"], (outputs, n)), np.reshape(block["d"], (outputs, m))
+    z = np.concatenate([[1.0], 1.0 / back])
+    transfer = c @ np.linalg.solve(z[:, None, None] * np.eye(n) - a, np.broadcast_to(b + 0j, (len(z), n, m))) + d
+    values = transfer[0].real @ [p.value[name] for name in block["inputs"]]
+    rows = np.einsum("wij,jwk->iwk", transfer[1:], np.stack([p.row[name] for name in block["inputs"]]))
+    for name, value, row in zip(block["outputs"], values, rows, strict=True):
+        p.value[name], p.row[name] = float(value), row
+
+
 def _lookup(block: Mapping[str, Any], p: _Point, back: Row, ts: float) -> tuple[float, Row]:
     x, y, at = np.asarray(block["x"]), np.asarray(block["y"]), p.value[block["input"]]
     i = int(np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2))
@@ -120,4 +147,7 @@ _LAWS = {
     "saturation": _through,
     "delay": _delay,
     "lookup": _lookup,
+    "quantise": _through,
+    "noise": _noise,
+    "hold": _hold,
 }

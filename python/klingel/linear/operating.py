@@ -36,6 +36,9 @@ def steady_spec(scenario: Scenario, *, at: Quantity | None = None) -> Spec:
     a run of it starts in the steady state, controllers settled. The track is level, its friction that at `at`, or the
     base of the scenario's adhesion.
 
+    Controllers know an endless track too: of the curvature and cant that their database has where they believe to be;
+    straight and level for None. A database that ends before goes on as it ends, as it does in a run.
+
     >>> from klingel import Scenario, Track, library
     >>> curve = Track.curve(radius="800 m", cant="160 mm")
     >>> spec = steady_spec(Scenario(library.vehicle("manchester_coach"), curve, speed=30.0), at="400 m")
@@ -43,8 +46,8 @@ def steady_spec(scenario: Scenario, *, at: Quantity | None = None) -> Spec:
     {'curvature': 0.00125, 'cant': 0.16}
     """
     curvature, cant = endless(scenario, at)
-    track = Track((Segment(ENDLESS, (curvature, curvature), (cant, cant)),))
-    spec = lower(scenario.replace(track=track, duration=None))
+    track = _uniform(curvature, cant)
+    spec = lower(scenario.replace(track=track, database=_believed(scenario, at), duration=None))
     uniform = {"curvature": curvature, "cant": cant}
     spec["track"] = {"uniform": uniform, "start": spec["track"]["start"], "cant_base": CANT_BASE}
     if (adhesion := scenario.adhesion) is not None:
@@ -53,6 +56,19 @@ def steady_spec(scenario: Scenario, *, at: Quantity | None = None) -> Spec:
         spec["adhesion"] = {"s": [0.0], "left": [left], "right": [right]}
     spec["run"]["settled"] = True
     return spec
+
+
+def _uniform(curvature: float, cant: float) -> Track:
+    return Track((Segment(ENDLESS, (curvature, curvature), (cant, cant)),))
+
+
+def _believed(scenario: Scenario, at: Quantity | None) -> Track | None:
+    """The endless track that strategies believe in; None for the true one."""
+    if at is None:
+        return None
+    known = scenario.track if scenario.database is None else scenario.database
+    s = min(max(scenario.sensors.believed(to_si(at, "m", key="at")), 0.0), known.length)
+    return _uniform(float(known.curvature(s)), float(known.cant(s)))
 
 
 def solve(spec: Spec, near: OperatingPoint | None = None) -> OperatingPoint:

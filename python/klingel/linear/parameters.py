@@ -21,6 +21,9 @@ OWN = {"speed": "m/s", "friction": "1", "rail_inclination": "1", "gauge": "m"}
 CONICITY = "conicity"
 """Slope of coned wheels; giving it to a vehicle with another profile makes its wheels cones."""
 
+MISMATCH = "radius_mismatch"
+"""Of all four wheelsets if it is the same, and with .0 to .3 that of each."""
+
 R = TypeVar("R", bound=Record)
 _CONE = re.compile(r"cone\((.+)\)")
 
@@ -52,8 +55,8 @@ def get(scenario: Scenario, path: str) -> float:
 
 def unit(scenario: Scenario, path: str) -> str:
     """The SI unit of a parameter, "1" for a pure number; errors as `get`."""
-    if path == CONICITY:
-        return "1"
+    if path in (CONICITY, MISMATCH):
+        return "1" if path == CONICITY else "m"
     for name, _, its_unit in _entries(scenario):
         if name == path:
             return its_unit
@@ -81,8 +84,10 @@ def replace(scenario: Scenario, path: str, value: Quantity) -> Scenario:
                 return scenario.replace(vehicle=_record(scenario.vehicle, rest.split("."), number))
             except InputError as error:
                 raise error.within("vehicle") from None
-        case "control" | "creep_options":
+        case "control" | "creep_options" | "sensors":
             return scenario.replace(**{head: _object(getattr(scenario, head), rest.split("."), number, path)})
+        case "radius_mismatch" if rest:
+            return scenario.replace(radius_mismatch=_object(scenario.radius_mismatch, [rest], number, path))
         case _:
             return scenario.replace(**{path: number})
 
@@ -94,9 +99,16 @@ def _entries(scenario: Scenario) -> Iterator[tuple[str, float, str]]:
     slope = _slope(scenario)
     if slope is not None:
         yield CONICITY, slope, "1"
+    if len(set(scenario.radius_mismatch)) == 1:
+        yield MISMATCH, scenario.radius_mismatch[0], "m"
+    yield from ((f"{MISMATCH}.{i}", dr, "m") for i, dr in enumerate(scenario.radius_mismatch))
     yield from _numbers("creep_options", scenario.creep_options)
     if scenario.control is not None:
         yield from _numbers("control", scenario.control)
+    for name, sensor in scenario.sensors.kinds():
+        for field in dataclasses.fields(sensor):
+            its_unit = sensor.unit_of(field.name)
+            yield f"sensors.{name}.{field.name}", getattr(sensor, field.name), its_unit
     for parameter in scenario.vehicle.parameters():
         path = f"vehicle.{parameter.key}"
         if isinstance(parameter.value, tuple):

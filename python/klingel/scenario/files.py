@@ -12,6 +12,7 @@ from typing import Any, get_type_hints
 from klingel import control, library
 from klingel.contact import STANDARD, CreepOptions, Profile, profile_of
 from klingel.contact.checks import Kind
+from klingel.control.sensor import KINDS, Sensor
 from klingel.errors import InputError, Problem, nearest
 from klingel.records import Record, read_toml, validated
 from klingel.scenario import own
@@ -76,6 +77,15 @@ class _Track(Record):
     segment: tuple[_Segment, ...] | None = None
 
 
+class _Database(_Track):
+    """A course, or none of them for the scenario's own track; keywords of Track.mistaken."""
+
+    curvature_scale: Number = 1.0
+    cant_scale: Number = 1.0
+    only: int | None = None
+    shift: Length = 0.0
+
+
 class _Patch(Record):
     """Keywords of klingel.track.Patch."""
 
@@ -98,7 +108,9 @@ def read(path: str | Path) -> Scenario:
 
     Keys: `vehicle` (a name of the library, or the path of a vehicle file relative to this one), `speed`, one of the
     tables `[track.curve]`, `[[track.segment]]` and the key `track.straight`, `[control]` with `strategy` and its
-    parameters, `rail` and `wheel` (names of standard profiles or paths of measured ones), `[creep_options]`,
+    parameters, `[sensors]` with a table a kind of sensor (`[sensors.gyro]`) and `typical = true` for all others,
+    `[database]` with the keywords of `Track.mistaken` (its `curve` is called `only` here) or a course as in `[track]`,
+    `rail` and `wheel` (names of standard profiles or paths of measured ones), `[creep_options]`,
     `[adhesion]` with `[[adhesion.patch]]`, and every other keyword of Scenario.
     """
     path = Path(path)
@@ -112,6 +124,10 @@ def read(path: str | Path) -> Scenario:
         made: dict[str, Any] = {"vehicle": _vehicle(tables["vehicle"], path.parent), "track": _track(tables["track"])}
         if "control" in tables:
             made["control"] = strategy(tables["control"], folder=path.parent)
+        if "sensors" in tables:
+            made["sensors"] = _sensors(tables["sensors"])
+        if "database" in tables:
+            made["database"] = _database(tables["database"], made["track"])
         if "creep_options" in tables:
             made["creep_options"] = _creep_options(tables["creep_options"])
         if "adhesion" in tables:
@@ -121,6 +137,60 @@ def read(path: str | Path) -> Scenario:
         return Scenario(**{**tables, **made})
     except InputError as error:
         raise error if error.file else error.in_file(str(path)) from None
+
+
+def _sensors(table: object) -> control.Sensors:
+    """Sensors of a `[sensors]` table: a table a kind, `typical = true` for the rest, `seed` and `record`."""
+    if not isinstance(table, Mapping):
+        raise InputError.single("sensors", table, "is no table", remedy="give [sensors]")
+    known = [*KINDS, "typical", "seed", "record"]
+    problems = [
+        Problem(f"sensors.{k}", table[k], "is not a known key", nearest(k, known)) for k in table if k not in known
+    ]
+    if type(table.get("typical", False)) is not bool:
+        problems.append(Problem("sensors.typical", table["typical"], "is no yes or no", "give true or false"))
+    made: dict[str, Any] = {key: table[key] for key in ("seed", "record") if key in table}
+    for name in KINDS:
+        if name in table:
+            try:
+                made[name] = _sensor(name, table[name])
+            except InputError as error:
+                problems += error.within(f"sensors.{name}").problems
+    if problems:
+        raise InputError(problems)
+    base = control.Sensors.typical() if table.get("typical") else control.Sensors()
+    try:
+        return dataclasses.replace(base, **made)
+    except InputError as error:
+        raise error.within("sensors") from None
+
+
+def _sensor(name: str, table: object) -> Sensor | None:
+    """One kind of sensor; `false` is an ideal one."""
+    if table is False:
+        return None
+    if not isinstance(table, Mapping):
+        raise InputError.single("", table, "is no table", remedy=f"give [sensors.{name}], or false for an ideal one")
+    known = [field.name for field in dataclasses.fields(Sensor)]
+    if problems := [Problem(k, table[k], "is not a known key", nearest(k, known)) for k in table if k not in known]:
+        raise InputError(problems)
+    return KINDS[name](**table)
+
+
+def _database(table: object, track: Track) -> Track:
+    if not isinstance(table, Mapping):
+        raise InputError.single(
+            "database", table, "is no table", remedy="give [database] with curvature_scale or shift"
+        )
+    try:
+        given = validated(_Database, table)
+        courses = any(getattr(given, key) is not None for key in ("straight", "curve", "segment"))
+        base = _course(given) if courses else track
+        return base.mistaken(
+            curvature_scale=given.curvature_scale, cant_scale=given.cant_scale, curve=given.only, shift=given.shift
+        )
+    except InputError as error:
+        raise error.within("database") from None
 
 
 def _creep_options(table: object) -> CreepOptions:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, Protocol, get_args
@@ -14,7 +14,7 @@ import numpy as np
 
 from klingel.contact import DRY_AND_CLEAN, STANDARD, CreepOptions, Profile
 from klingel.contact.checks import Kind, kind_problems
-from klingel.control import Traction
+from klingel.control import Sensors, Traction
 from klingel.errors import InputError, Problem, nearest
 from klingel.track import Adhesion, Track
 from klingel.units import Quantity, to_si
@@ -33,6 +33,15 @@ RUN_OUT = 2.0
 """Track kept free before the last and ahead of the first wheelset [m], for the drift of a slow speed hold."""
 
 
+MISMATCH_MAX = 0.01
+"""Largest difference of the radii of two wheels of a wheelset [m]: contact tables keep the nominal radius, half of this
+is one per cent of it. Workshops turn wheels of one axle to within some tenths of a millimetre."""
+
+
+IDEAL = Sensors()
+"""Sensors without any error."""
+
+
 class Strategy(Protocol):
     """What steers and drives a vehicle."""
 
@@ -46,12 +55,14 @@ class Scenario:
     """One run: vehicle and track, then keywords; strings carry units, plain numbers are SI.
 
     vehicle: of the library or of a file; track: where it runs; speed: at the start, held by a slow ideal force;
-    control: strategy of `klingel.control`, None for none; friction: coefficient of all contacts; adhesion: friction
+    control: strategy of `klingel.control`, None for none; sensors: what it measures with; database: the track that it
+    knows, None for the true one (see `Track.mistaken`); friction: coefficient of all contacts; adhesion: friction
     along the track in its place; headwind: speed of the air against the vehicle, for the running resistance;
     contact: normal contact by `hertz` (an ellipse in every zone of the wheel) or `kik_piotrowski` (not Hertzian),
     equally fast; creep_law with creep_elements (along, across) for FASTSIM and its creep_options; wheel: profile of all
     wheels, None for the vehicle's; rail: its profile or the name of a standard one; rail_inclination (slope, positive
-    leans inwards), gauge;
+    leans inwards), gauge; radius_mismatch: radius of the right wheel minus that of the left one, of all wheelsets or of
+    the four from the front, each wheel has half of it;
     stick: creepages need way to build up, so that standing wheels stick instead of creeping;
     step: of the integrator; record_interval: of the results; duration: None runs to the end of the track; a vehicle
     that starts from rest needs one, with a traction loop it is that of the commands; energy: book it (channels
@@ -68,6 +79,8 @@ class Scenario:
     track: Track
     speed: float
     control: Strategy | None
+    sensors: Sensors
+    database: Track | None
     friction: float
     adhesion: Adhesion | None
     headwind: float
@@ -80,6 +93,7 @@ class Scenario:
     rail: str | Profile
     rail_inclination: float
     gauge: float
+    radius_mismatch: tuple[float, float, float, float]
     step: float
     record_interval: float
     duration: float | None
@@ -92,6 +106,8 @@ class Scenario:
         *,
         speed: Quantity,
         control: Strategy | None = None,
+        sensors: Sensors = IDEAL,
+        database: Track | None = None,
         friction: Quantity = FRICTION,
         adhesion: Adhesion | None = None,
         headwind: Quantity = 0.0,
@@ -104,6 +120,7 @@ class Scenario:
         rail: str | Profile = "60E1",
         rail_inclination: Quantity = 0.025,
         gauge: Quantity = "1435 mm",
+        radius_mismatch: Quantity | Sequence[Quantity] = 0.0,
         step: Quantity = "0.5 ms",
         record_interval: Quantity = "1 ms",
         duration: Quantity | None = None,
@@ -114,6 +131,8 @@ class Scenario:
             "track": track,
             "speed": to_si(speed, "m/s", key="speed"),
             "control": control,
+            "sensors": sensors,
+            "database": database,
             "friction": to_si(friction, "1", key="friction"),
             "adhesion": adhesion,
             "headwind": to_si(headwind, "m/s", key="headwind"),
@@ -126,6 +145,7 @@ class Scenario:
             "rail": rail,
             "rail_inclination": to_si(rail_inclination, "1", key="rail_inclination"),
             "gauge": to_si(gauge, "m", key="gauge"),
+            "radius_mismatch": _four(radius_mismatch, "radius_mismatch"),
             "step": to_si(step, "s", key="step"),
             "record_interval": to_si(record_interval, "s", key="record_interval"),
             "duration": None if duration is None else to_si(duration, "s", key="duration"),
@@ -178,6 +198,15 @@ def _as_tuple(value: object) -> object:
     return tuple(value) if isinstance(value, (list, tuple)) else value
 
 
+def _four(value: Quantity | Sequence[Quantity], key: str) -> tuple[float, ...]:
+    """Lengths of the four wheelsets from the front [m], from one for all or one each."""
+    if isinstance(value, (list, tuple)):
+        if len(value) != 4:
+            raise InputError.single(key, value, "is no length a wheelset", remedy="give one length, or four")
+        return tuple(to_si(each, "m", key=f"{key}[{i}]") for i, each in enumerate(value))
+    return (to_si(value, "m", key=key),) * 4  # type: ignore[arg-type]  # it refuses what is no quantity
+
+
 def _is_grid(elements: object) -> bool:
     """Two whole numbers within the limits; 10.0 and True are no whole numbers."""
     if not isinstance(elements, tuple) or len(elements) != 2:
@@ -197,11 +226,19 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
         yield Problem("stick", scenario.stick, "is no yes or no", "give True or False")
     if scenario.friction > 1.5:
         yield Problem("friction", scenario.friction, "is no coefficient of friction", "give 0.05 to 0.6")
+    if not isinstance(scenario.sensors, Sensors):
+        yield Problem("sensors", scenario.sensors, "are none", "give klingel.control.Sensors")
+    if not isinstance(scenario.database, Track | None):
+        yield Problem("database", scenario.database, "is no track", "give a klingel.Track, or None")
     yield from _along_track_problems(scenario)
     if not abs(scenario.rail_inclination) <= 0.1:
         yield Problem(
             "rail_inclination", scenario.rail_inclination, "is too steep", "give a slope such as 1/40 = 0.025"
         )
+    for i, mismatch in enumerate(scenario.radius_mismatch):
+        if not abs(mismatch) <= MISMATCH_MAX:
+            remedy = f"give at most {MISMATCH_MAX * 1e3:g} mm; plain numbers are metres"
+            yield Problem(f"radius_mismatch[{i}]", mismatch, "is too much for a pair of wheels [m]", remedy)
     for key, choice in (("contact", Contact), ("creep_law", CreepLaw)):
         value, known = getattr(scenario, key), get_args(choice)
         if (key, value) == ("creep_law", "exact"):

@@ -15,6 +15,7 @@ import klingel
 from klingel import result
 from klingel.assess import curving
 from klingel.assess.header import course_of
+from klingel.control.sensor import whole_of
 from klingel.core import core
 from klingel.errors import InputError, SimulationError
 from klingel.lower import lower
@@ -76,20 +77,23 @@ class Plan:
     """Which runs a study consists of.
 
     scenario: recorded for what is assessed; chosen: the inputs; runs: the inputs of every run by its name, in order;
-    seed: of the draws.
+    seed: of the draws; left_out: inputs that this strategy does not feel.
     """
 
     scenario: Scenario
     chosen: Inputs
     runs: Mapping[str, Mapping[str, float]]
     seed: int
+    left_out: tuple[str, ...] = ()
 
     def of(self, name: str) -> Scenario:
         """The scenario of one run; errors: InputError for an unknown name."""
         if name not in self.runs:
             message = "is no run of this study"
             raise InputError.single("run", name, message, remedy="give a name such as drawn_0 of the table of runs")
-        return changed(self.scenario, self.runs[name])
+        part, _, number = name.partition("_")
+        seed = whole_of(self.seed, number) if part == "drawn" else None
+        return changed(self.scenario, self.runs[name], seed=seed)
 
 
 def plan_of(
@@ -103,17 +107,20 @@ def plan_of(
     if runs < 0 or (runs == 0 and not alone):
         raise InputError.single("runs", runs, "leaves nothing to run", remedy="give 1 or more")
     table = inputs() if chosen is None else dict(chosen)
-    table = {name: each for name, each in table.items() if EFFECTS[name].acts_on(scenario)}
+    felt = {name: each for name, each in table.items() if EFFECTS[name].acts_on(scenario)}
+    if not felt:
+        remedy = "choose inputs of the vehicle too, such as friction"
+        raise InputError.single("inputs", list(table), "are not felt by this strategy", remedy=remedy)
     base = recorded(scenario)
-    nominal = {name: n for name in table if (n := EFFECTS[name].nominal) is not None}
+    nominal = {name: n for name in felt if (n := EFFECTS[name].nominal) is not None}
     values: dict[str, Mapping[str, float]] = {"given": {}, "nominal": nominal}
     if alone:
-        for name, tried in levels(table).items():
+        for name, tried in levels(felt).items():
             for i, value in enumerate(tried):
                 values[f"alone_{name}_{i}"] = nominal | {name: value}
-    for i, drawn in enumerate(draw(table, runs, seed) if runs else []):
+    for i, drawn in enumerate(draw(felt, runs, seed) if runs else []):
         values[f"drawn_{i}"] = drawn
-    return Plan(base, table, values, seed)
+    return Plan(base, felt, values, seed, tuple(name for name in table if name not in felt))
 
 
 def recorded(scenario: Scenario) -> Scenario:
@@ -145,9 +152,9 @@ def run(
         scenario: through one curve; its step is kept.
         out: folder to write to; made if missing.
         runs: drawn ones; a study of more runs in the same folder goes on with those that are there.
-        seed: of the draws.
-        chosen: inputs and their distributions, those of `inputs()` if not given; inputs of the strategy are left out
-            where there is none.
+        seed: of the draws; left_out: inputs that this strategy does not feel.
+        chosen: inputs and their distributions, those of `inputs()` if not given; what acts through a
+            measurement that the strategy does not take is left out.
         alone: also try each input alone.
         jobs: runs at a time; one a processor if not given.
         fresh: forget what the folder holds.

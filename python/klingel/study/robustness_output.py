@@ -118,6 +118,9 @@ def _asked(made: Robustness, plan: Plan) -> Section:
         "Inputs are independent of each other. The strategy is designed for the nominal vehicle in every run: what is "
         "drawn is unknown to it.",
     )
+    if plan.left_out:
+        titles = ", ".join(EFFECTS[name].title for name in plan.left_out)
+        facts["Left out"] = f"{titles}: the strategy measures nothing that they change"
     facts |= {f"Range of {EFFECTS[name].title}": f"{each.reason} ({each.status})" for name, each in plan.chosen.items()}
     return Section("What was asked", words, tuple(tables), facts=facts)
 

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from klingel.errors import InputError, Problem
 from klingel.track.adhesion import Adhesion, Patch, Rail
+from klingel.track.mistaken import scaled, shifted
 from klingel.units import Quantity, to_si
 
 CANT_BASE = 1.5
@@ -152,6 +153,35 @@ class Track:
             for s in self.segments
         )
         return Track(tuple(flipped), name=self.name)
+
+    def mistaken(
+        self,
+        *,
+        curvature_scale: Quantity = 1.0,
+        cant_scale: Quantity = 1.0,
+        curve: int | None = None,
+        shift: Quantity = 0.0,
+    ) -> Track:
+        """This track as a database with mistakes has it, for `Scenario(database=...)`.
+
+        curvature_scale, cant_scale: factors on all curves, or on one `curve` alone (1 is the first): 1.1 is a tenth
+        too much, 0 a missing curve (give both), -1 one of the wrong hand; shift [m]: how much farther along the
+        track everything lies, nearer for a negative one.
+        Errors: InputError for a curve that there is not, and for what is no track.
+
+        >>> track = Track.curve(radius="800 m", cant="100 mm", transition="100 m")
+        >>> wrong = track.mistaken(curvature_scale=1.1, shift="-30 m")
+        >>> float(wrong.curvature(220.0)) == 1.1 * float(track.curvature(250.0))
+        True
+        >>> float(abs(track.mistaken(curvature_scale=0, cant_scale=0, curve=1).cant([300.0, 500.0])).max())
+        0.0
+        """
+        factors = (to_si(curvature_scale, "1", key="curvature_scale"), to_si(cant_scale, "1", key="cant_scale"))
+        wrong = tuple(scaled(self.segments, *factors, curve))
+        by = to_si(shift, "m", key="shift")
+        if not abs(by) < self.length:
+            raise InputError.single("shift", shift, "is beyond the track", remedy=f"give less than {self.length:g} m")
+        return Track(tuple(shifted(wrong, by)) if by else wrong, name=self.name)
 
     def _at(self, s: ArrayLike, ends: Sequence[tuple[float, float]]) -> NDArray[np.float64]:
         at = np.asarray(s, dtype=np.float64)

@@ -10,6 +10,9 @@ use klingel_physics::contact::creep::{CreepOptions, Exact, FallingFriction, Pola
 use klingel_physics::contact::{ContactError, CreepForce, CreepLaw, Material, PairGeometry, Profile};
 use std::sync::Arc;
 
+/// A wheel may be larger or smaller than its contact table by so much \[m\]: one per cent of the curvature of a patch.
+const RADIUS_OFFSET_MAX: f64 = 5e-3;
+
 impl Compiler<'_> {
     pub(super) fn wheels(&mut self, material: &Material) -> Result<Vec<Wheel>, EngineError> {
         let tables = tables_of(self.spec, material)?;
@@ -20,6 +23,10 @@ impl Compiler<'_> {
                 .get(w.pair)
                 .ok_or_else(|| value(format!("{}.pair", w.name), w.pair, "give the index of a contact pair"))?;
             let half_tape_distance = pair.tape_circle();
+            if w.radius_offset.is_nan() || w.radius_offset.abs() > RADIUS_OFFSET_MAX {
+                let remedy = format!("give at most {RADIUS_OFFSET_MAX} m: the contact table keeps the nominal radius");
+                return Err(value(format!("{}.radius_offset", w.name), w.radius_offset, &remedy));
+            }
             let sign = if w.side == Side::Right { 1.0 } else { -1.0 };
             let stick = self.spec.creep.stick.then(|| {
                 let first = self.states.add(format!("{}.stick_x", w.name), "1", 0.0);
@@ -34,7 +41,8 @@ impl Compiler<'_> {
                 table: Arc::clone(&prepared.table),
                 friction: positive(&w.name, "friction", w.friction)?,
                 half_tape_distance,
-                radius: pair.radius,
+                radius: pair.radius + w.radius_offset,
+                radius_offset: w.radius_offset,
                 centre: [0.0, sign * half_tape_distance, -pair.radius - self.bodies[body].position[2]],
                 stick,
             });

@@ -3,6 +3,7 @@
 
 use super::filter::{Sections, StateSpace};
 use super::lookup::{Lookup, Outside};
+use super::noise;
 use klingel_physics::Scalar;
 
 /// A number or the slot of the signal that carries it.
@@ -73,11 +74,21 @@ impl Pi {
     }
 }
 
-/// When a sample is taken: since the start of the run, and since the sample before \[s\].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// When a sample is taken, and how.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instant {
-    pub time: f64,
+    /// Its number since the start of the run.
+    pub sample: i64,
+    /// Time since the sample before \[s\].
     pub interval: f64,
+    /// Whether blocks that steady states and linear models cannot have (rounding, noise, sampling) show what a linear
+    /// law has in their place.
+    pub linear: bool,
+}
+
+impl Instant {
+    /// The start of a run, of a controller that has always been there.
+    const STEADY: Self = Self { sample: 0, interval: 0.0, linear: true };
 }
 
 /// One compiled block; slots index the signals of the controller.
@@ -94,9 +105,17 @@ pub enum Block {
     RateLimit { input: usize, rising: f64, falling: f64 },
     Delay { input: usize, samples: usize },
     Lookup { input: usize, table: Lookup },
+    Quantise { input: usize, step: f64 },
+    Noise { std: f64, seed: u64 },
+    Hold { input: usize, samples: usize },
 }
 
 impl Block {
+    /// Signals it writes.
+    pub fn signals(&self) -> usize {
+        if let Self::StateSpace { filter, .. } = self { filter.outputs() } else { 1 }
+    }
+
     /// Numbers it remembers from sample to sample.
     pub fn states(&self) -> usize {
         match self {
@@ -105,6 +124,8 @@ impl Block {
             Self::Pi(_) => 2,
             Self::RateLimit { .. } => 1,
             Self::Delay { samples, .. } => *samples,
+            // of the linear law the inputs before, of the other one the input held
+            Self::Hold { samples, .. } => *samples - 1,
             _ => 0,
         }
     }
@@ -114,41 +135,43 @@ impl Block {
         if let Self::StateSpace { inputs, filter } = self { inputs.len() + filter.states() } else { 0 }
     }
 
-    /// Goes to the steady state for constant inputs, a PI with the integral given, within limits or without, and returns
-    /// the output there.
+    /// Goes to the steady state for constant inputs, a PI with the integral given, within limits or without; `out` is
+    /// what it puts out there. `signals` are those of the blocks before.
     pub fn reset<S: Scalar>(
         &self,
         memory: &mut [S],
         scratch: &mut [S],
-        signals: &[S],
+        (signals, out): (&[S], &mut [S]),
         integral: S,
         limited: bool,
-    ) -> Result<S, Outside> {
-        Ok(match self {
+    ) -> Result<(), Outside> {
+        out[0] = match self {
             Self::Filter { input, filter } => filter.reset(memory, signals[*input]),
             Self::StateSpace { inputs, filter } => {
                 gather(scratch, inputs, signals);
-                filter.reset(memory, &scratch[..inputs.len()])
+                filter.reset(memory, &scratch[..inputs.len()], out);
+                return Ok(());
             }
             Self::Pi(pi) => pi.settled(memory, signals, integral, limited),
-            Self::RateLimit { input, .. } | Self::Delay { input, .. } => {
+            Self::RateLimit { input, .. } | Self::Delay { input, .. } | Self::Hold { input, .. } => {
                 memory.fill(signals[*input]);
                 signals[*input]
             }
-            _ => return self.step(memory, scratch, signals, Instant::default()),
-        })
+            _ => return self.step(memory, scratch, (signals, out), Instant::STEADY),
+        };
+        Ok(())
     }
 
-    /// The output of this sample.
+    /// The outputs of this sample. `signals` are those of the blocks before.
     pub fn step<S: Scalar>(
         &self,
         memory: &mut [S],
         scratch: &mut [S],
-        signals: &[S],
-        Instant { time, interval: ts }: Instant,
-    ) -> Result<S, Outside> {
-        Ok(match self {
-            Self::Clock => S::constant(time),
+        (signals, out): (&[S], &mut [S]),
+        Instant { sample, interval: ts, linear }: Instant,
+    ) -> Result<(), Outside> {
+        out[0] = match self {
+            Self::Clock => S::constant(sample as f64 * ts),
             Self::Sum { terms, bias } => {
                 terms.iter().fold(S::constant(*bias), |sum, &(slot, gain)| sum + gain.value(signals) * signals[slot])
             }
@@ -162,7 +185,8 @@ impl Block {
             Self::StateSpace { inputs, filter } => {
                 gather(scratch, inputs, signals);
                 let (given, next) = scratch.split_at_mut(inputs.len());
-                filter.step(memory, given, &mut next[..filter.states()])
+                filter.step(memory, given, &mut next[..filter.states()], out);
+                return Ok(());
             }
             Self::Pi(pi) => pi.step(memory, signals, ts),
             Self::Saturation { input, lower, upper } => {
@@ -178,8 +202,21 @@ impl Block {
                 memory[memory.len() - 1] = signals[*input];
                 y
             }
-            Self::Lookup { input, table } => return table.value(signals[*input]),
-        })
+            Self::Lookup { input, table } => table.value(signals[*input])?,
+            Self::Quantise { input, .. } if linear => signals[*input],
+            Self::Quantise { input, step } => signals[*input].lift(|x| (step * (x / step).round(), 0.0)),
+            Self::Noise { .. } if linear => S::zero(),
+            Self::Noise { std, seed } => S::constant(std * noise::normal(*seed, sample)),
+            Self::Hold { input, samples: 1 } => signals[*input],
+            Self::Hold { input, samples } if linear => mean(memory, signals[*input], *samples),
+            Self::Hold { input, samples } => {
+                if sample.rem_euclid(*samples as i64) == 0 {
+                    memory[0] = signals[*input];
+                }
+                memory[0]
+            }
+        };
+        Ok(())
     }
 
     /// Where a limit or corner is near: how far off, as a part of the law's range; none for a smooth law or one far off.
@@ -199,6 +236,15 @@ impl Block {
     }
 }
 
+/// The mean of this input and those before, the oldest first, which is what a hold is apart from when it samples: the
+/// response of every phase of it, averaged.
+fn mean<S: Scalar>(before: &mut [S], input: S, count: usize) -> S {
+    let sum = before.iter().fold(input, |sum, &x| sum + x);
+    before.rotate_left(1);
+    before[count - 2] = input;
+    sum * (1.0 / count as f64)
+}
+
 fn gather<S: Scalar>(into: &mut [S], slots: &[usize], signals: &[S]) {
     for (x, &slot) in into.iter_mut().zip(slots) {
         *x = signals[slot];
@@ -212,18 +258,32 @@ mod tests {
     const TS: f64 = 1e-3;
 
     /// A block with its memory, as a controller keeps it.
-    struct Kept(Block, Vec<f64>);
+    struct Kept {
+        block: Block,
+        memory: Vec<f64>,
+        now: Instant,
+    }
 
     impl Kept {
         fn new(block: Block) -> Self {
             let memory = vec![0.0; block.states()];
-            Self(block, memory)
+            Self { block, memory, now: Instant { sample: 0, interval: TS, linear: false } }
+        }
+        fn linear(mut self) -> Self {
+            self.now.linear = true;
+            self
         }
         fn reset(&mut self, signals: &[f64]) -> f64 {
-            self.0.reset(&mut self.1, &mut [], signals, 0.0, true).unwrap()
+            let mut out = [f64::NAN];
+            self.now.sample = 0;
+            self.block.reset(&mut self.memory, &mut [], (signals, &mut out), 0.0, true).unwrap();
+            out[0]
         }
         fn step(&mut self, signals: &[f64]) -> f64 {
-            self.0.step(&mut self.1, &mut [], signals, Instant { time: 0.0, interval: TS }).unwrap()
+            let mut out = [f64::NAN];
+            self.now.sample += 1;
+            self.block.step(&mut self.memory, &mut [], (signals, &mut out), self.now).unwrap();
+            out[0]
         }
     }
 
@@ -295,7 +355,7 @@ mod tests {
 
     #[test]
     fn a_settled_pi_has_no_error_or_stands_at_its_limit() {
-        let Kept(Block::Pi(pi), _) = pi(-3.0, 3.0) else { unreachable!() };
+        let Block::Pi(pi) = pi(-3.0, 3.0).block else { unreachable!() };
         assert_eq!(pi.unsettled(1.5, &[0.0], true), 0.0);
         assert_eq!(pi.unsettled(1.0, &[0.25], true), 0.25);
         assert_eq!(pi.unsettled(1.0, &[1.0], true), 0.0);
@@ -321,5 +381,39 @@ mod tests {
         assert_eq!(d.reset(&[7.0]), 7.0);
         let out: Vec<f64> = (0..6).map(|k| d.step(&[f64::from(k)])).collect();
         assert_eq!(out, [7.0, 7.0, 7.0, 0.0, 1.0, 2.0]);
+    }
+
+    #[test]
+    fn the_nearest_multiple_of_a_step() {
+        let block = Block::Quantise { input: 0, step: 0.25 };
+        let mut q = Kept::new(block.clone());
+        assert_eq!([0.1, 0.13, -0.13, 7.4, 0.125, -0.125].map(|x| q.step(&[x])), [0.0, 0.25, -0.25, 7.5, 0.25, -0.25]);
+        assert_eq!(q.reset(&[0.1]), 0.1);
+        assert_eq!(Kept::new(block).linear().step(&[0.1]), 0.1);
+    }
+
+    #[test]
+    fn noise_of_a_standard_deviation_that_no_linear_model_has() {
+        let block = Block::Noise { std: 0.5, seed: 11 };
+        let mut n = Kept::new(block.clone());
+        assert_eq!(n.reset(&[]), 0.0);
+        assert_eq!(n.step(&[]), 0.5 * noise::normal(11, 1));
+        assert_eq!(n.step(&[]), 0.5 * noise::normal(11, 2));
+        assert_eq!(Kept::new(block).linear().step(&[]), 0.0);
+    }
+
+    #[test]
+    fn a_hold_takes_every_third_sample() {
+        let block = Block::Hold { input: 0, samples: 3 };
+        let mut h = Kept::new(block.clone());
+        assert_eq!(h.reset(&[7.0]), 7.0);
+        let held: Vec<f64> = (1..8).map(|k| h.step(&[f64::from(k)])).collect();
+        assert_eq!(held, [7.0, 7.0, 3.0, 3.0, 3.0, 6.0, 6.0]);
+        h.now.sample = -1;
+        assert_eq!(h.step(&[9.0]), 9.0);
+        let mut mean = Kept::new(block).linear();
+        mean.reset(&[0.0]);
+        assert_eq!([3.0, 3.0, 3.0, 0.0, 6.0, 0.0].map(|x| mean.step(&[x])), [1.0, 2.0, 3.0, 2.0, 3.0, 2.0]);
+        assert_eq!(Kept::new(Block::Hold { input: 0, samples: 1 }).step(&[4.0]), 4.0);
     }
 }

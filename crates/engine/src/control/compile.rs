@@ -7,7 +7,7 @@ use super::error::ControlError;
 use super::filter::{Sections, StateSpace};
 use super::lookup::Lookup;
 use super::spec::{BlockSpec, ControlSpec, Parameter, Section};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The names known so far and their slots.
 struct Names(HashMap<String, usize>);
@@ -47,9 +47,15 @@ pub(super) fn compile(spec: &ControlSpec) -> Result<Diagram, ControlError> {
         names.add(name)?;
     }
     let mut blocks = Vec::with_capacity(spec.blocks.len());
+    let mut taken = HashSet::new();
     for block in &spec.blocks {
         blocks.push((block.name().to_owned(), compile_block(block, &names)?));
-        names.add(block.name())?;
+        if !taken.insert(block.name()) {
+            return Err(ControlError::Duplicate { name: block.name().clone() });
+        }
+        for signal in block.signals() {
+            names.add(signal)?;
+        }
     }
     let mut targets = HashMap::new();
     for c in &spec.commands {
@@ -87,10 +93,9 @@ fn compile_block(spec: &BlockSpec, names: &Names) -> Result<Block, ControlError>
             }
             Block::Filter { input: slot(input)?, filter: Sections::new(sections.clone()) }
         }
-        BlockSpec::StateSpace { inputs, a, b, c, d, .. } => {
-            let inputs = names.slots(&place, inputs)?;
-            let filter = compile_state_space(block, inputs.len(), a, b, c, d)?;
-            Block::StateSpace { inputs, filter }
+        BlockSpec::StateSpace { inputs, outputs, a, b, c, d, .. } => {
+            let filter = compile_state_space(block, [inputs.len(), outputs.len()], [a, b, c, d])?;
+            Block::StateSpace { inputs: names.slots(&place, inputs)?, filter }
         }
         BlockSpec::Pi { input, proportional, integral, lower, upper, .. } => Block::Pi(Pi {
             input: slot(input)?,
@@ -108,14 +113,18 @@ fn compile_block(spec: &BlockSpec, names: &Names) -> Result<Block, ControlError>
             falling: positive(block, "falling", *falling)?,
         },
         BlockSpec::Delay { input, samples, .. } => {
-            if *samples == 0 {
-                return Err(bad(block, "samples", 0, "give at least 1, or leave the block out"));
-            }
-            Block::Delay { input: slot(input)?, samples: *samples }
+            Block::Delay { input: slot(input)?, samples: counted(block, *samples)? }
         }
         BlockSpec::Lookup { input, x, y, interpolation, edge, .. } => {
             check_points(block, x, y)?;
             Block::Lookup { input: slot(input)?, table: Lookup::new(x.clone(), y.clone(), *interpolation, *edge) }
+        }
+        BlockSpec::Quantise { input, step, .. } => {
+            Block::Quantise { input: slot(input)?, step: positive(block, "step", *step)? }
+        }
+        BlockSpec::Noise { std, seed, .. } => Block::Noise { std: not_negative(block, "std", *std)?, seed: *seed },
+        BlockSpec::Hold { input, samples, .. } => {
+            Block::Hold { input: slot(input)?, samples: counted(block, *samples)? }
         }
     })
 }
@@ -132,6 +141,14 @@ fn positive(block: &str, what: &'static str, x: f64) -> Result<f64, ControlError
     if x.is_finite() && x > 0.0 { Ok(x) } else { Err(bad(block, what, x, "give a finite number above zero")) }
 }
 
+fn not_negative(block: &str, what: &'static str, x: f64) -> Result<f64, ControlError> {
+    if x.is_finite() && x >= 0.0 { Ok(x) } else { Err(bad(block, what, x, "give zero or a finite number above")) }
+}
+
+fn counted(block: &str, samples: usize) -> Result<usize, ControlError> {
+    if samples > 0 { Ok(samples) } else { Err(bad(block, "samples", 0, "give at least 1, or leave the block out")) }
+}
+
 const NO_POLE_AT_ONE: &str = "it has no steady state to start from; use a `pi` block for an integral";
 
 fn check_section(block: &str, s: &Section) -> Result<(), ControlError> {
@@ -144,23 +161,29 @@ fn check_section(block: &str, s: &Section) -> Result<(), ControlError> {
 
 fn compile_state_space(
     block: &str,
-    inputs: usize,
-    a: &[Vec<f64>],
-    b: &[Vec<f64>],
-    c: &[f64],
-    d: &[f64],
+    [inputs, outputs]: [usize; 2],
+    [a, b, c, d]: [&Vec<Vec<f64>>; 4],
 ) -> Result<StateSpace, ControlError> {
-    let n = c.len();
-    let shape = |m: &[Vec<f64>], columns| m.len() == n && m.iter().all(|r| r.len() == columns);
-    if !(shape(a, n) && shape(b, inputs) && d.len() == inputs) {
-        let sizes = format!("a {} rows, b {} rows, c {n}, d {}, inputs {inputs}", a.len(), b.len(), d.len());
-        return Err(bad(block, "the shape of a, b, c, d", sizes, "give a n x n, b n x m, c n, d m"));
+    if outputs == 0 {
+        return Err(bad(block, "the number of outputs", 0, "name at least one"));
     }
-    let (a, b) = (a.concat(), b.concat());
-    for x in a.iter().chain(&b).chain(c).chain(d) {
+    let n = a.len();
+    let shape = |m: &[Vec<f64>], rows, columns| m.len() == rows && m.iter().all(|r| r.len() == columns);
+    if !(shape(a, n, n) && shape(b, n, inputs) && shape(c, outputs, n) && shape(d, outputs, inputs)) {
+        let [a, b, c, d] = [a, b, c, d].map(|m| format!("{} x {}", m.len(), m.first().map_or(0, Vec::len)));
+        let sizes = format!("{a}, {b}, {c}, {d} of {inputs} inputs and {outputs} outputs");
+        return Err(bad(
+            block,
+            "the shape of a, b, c, d",
+            sizes,
+            "give a n x n, b n x inputs, c outputs x n, d outputs x inputs",
+        ));
+    }
+    let matrices = [a, b, c, d].map(|m| m.concat());
+    for x in matrices.iter().flatten() {
         finite(block, "a coefficient", *x)?;
     }
-    let filter = StateSpace::new(a, b, c.to_vec(), d.to_vec());
+    let filter = StateSpace::new([n, inputs, outputs], matrices);
     if filter.settles() { Ok(filter) } else { Err(bad(block, "a pole", "1", NO_POLE_AT_ONE)) }
 }
 

@@ -155,20 +155,63 @@ mod tests {
             (r#"{"kind": "sum", "name": "out", "terms": []}, {"kind": "sum", "name": "out", "terms": []}"#, "twice"),
             (r#"{"kind": "delay", "name": "out", "input": "v", "samples": 0}"#, "samples"),
             (r#"{"kind": "lookup", "name": "out", "input": "v", "x": [1, 1], "y": [0, 0]}"#, "increasing"),
+            (r#"{"kind": "quantise", "name": "out", "input": "v", "step": 0}"#, "step"),
+            (r#"{"kind": "noise", "name": "out", "std": -1, "seed": 0}"#, "std"),
+            (r#"{"kind": "hold", "name": "out", "input": "v", "samples": 0}"#, "samples"),
             (r#"{"kind": "rate_limit", "name": "out", "input": "v", "rising": 0, "falling": 1}"#, "rising"),
             (r#"{"kind": "filter", "name": "out", "input": "v", "sections": [{"b": [1, 0, 0], "a": [-1, 0]}]}"#, "pi"),
             (
-                r#"{"kind": "state_space", "name": "out", "inputs": ["v"], "a": [[1]], "b": [[1]], "c": [1], "d": [0]}"#,
+                r#"{"kind": "state_space", "name": "f", "inputs": ["v"], "outputs": ["out"], "a": [[1]], "b": [[1]], "c": [[1]], "d": [[0]]}"#,
                 "pole",
             ),
             (
-                r#"{"kind": "state_space", "name": "out", "inputs": ["v"], "a": [[1, 2]], "b": [[1]], "c": [1], "d": [0]}"#,
+                r#"{"kind": "state_space", "name": "f", "inputs": ["v"], "outputs": ["out"], "a": [[1, 2]], "b": [[1]], "c": [[1]], "d": [[0]]}"#,
                 "shape",
             ),
         ] {
             let error = controller(blocks).unwrap_err().to_string();
             assert!(error.contains(word), "{error}");
         }
+    }
+
+    #[test]
+    fn a_block_of_several_outputs_is_read_by_their_names() {
+        let mut c = controller(
+            r#"{"kind": "state_space", "name": "both", "inputs": ["v", "w"], "outputs": ["sum", "lag"],
+                "a": [[0.5]], "b": [[1, 0]], "c": [[0], [1]], "d": [[1, 1], [0, 0]]},
+               {"kind": "sum", "name": "out", "terms": [{"signal": "sum"}, {"signal": "lag", "gain": 10}]}"#,
+        )
+        .unwrap();
+        c.reset(&[1.0, 3.0]).unwrap();
+        assert_eq!(c.commands(), [24.0]);
+        c.step(&[0.0, 0.0]).unwrap();
+        assert_eq!(c.commands(), [20.0]);
+        assert_eq!(c.diagram().state_names(), ["both.0"]);
+    }
+
+    #[test]
+    fn runs_round_and_hold_and_steady_states_do_not() {
+        let blocks = r#"{"kind": "quantise", "name": "q", "input": "v", "step": 1.0},
+            {"kind": "noise", "name": "n", "std": 1.0, "seed": 5},
+            {"kind": "hold", "name": "h", "input": "q", "samples": 2},
+            {"kind": "sum", "name": "out", "terms": [{"signal": "h"}, {"signal": "n"}]}"#;
+        let mut c = controller(blocks).unwrap();
+        c.reset(&[0.3, 0.0]).unwrap();
+        assert_eq!(c.commands(), [0.3]);
+        c.before_start();
+        c.step(&[0.3, 0.0]).unwrap();
+        let first = c.commands()[0];
+        assert!(first != 0.0 && first != 0.3, "{first}");
+        let mut again = controller(blocks).unwrap();
+        again.before_start();
+        again.step(&[0.3, 0.0]).unwrap();
+        assert_eq!(again.commands(), [first]);
+        let diagram = c.diagram();
+        let mut memory = diagram.memory::<f64>();
+        memory.linear = true;
+        diagram.settle(&mut memory, &[0.3, 0.0], &[]).unwrap();
+        diagram.step(&mut memory, &[0.5, 0.0]).unwrap();
+        assert_eq!(diagram.commands(&memory).collect::<Vec<_>>(), [0.4]);
     }
 
     #[test]

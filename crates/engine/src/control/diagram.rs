@@ -19,20 +19,23 @@ pub struct Diagram {
     probe_slots: Vec<usize>,
 }
 
-/// A block with its name and where its memory begins.
+/// A block with its name and where its memory and its signals begin.
 #[derive(Clone, Debug)]
 struct Placed {
     name: String,
     block: Block,
     memory: usize,
+    signal: usize,
 }
 
-/// What a diagram remembers from sample to sample, and its signals: measurements first, then one a block.
+/// What a diagram remembers from sample to sample, and its signals: measurements first, then those of the blocks.
 #[derive(Clone, Debug)]
 pub struct Memory<S> {
     pub states: Vec<S>,
     /// Whether limits of integrals count in `settle`; on the way to a steady state they may stand in it.
     pub limited: bool,
+    /// Whether a `step` shows the linear law of blocks that round, sample or make noise, as linear models need it.
+    pub linear: bool,
     /// Taken since the start of the run.
     samples: i64,
     signals: Vec<S>,
@@ -53,10 +56,11 @@ impl Diagram {
         command_slots: Vec<usize>,
         probe_slots: Vec<usize>,
     ) -> Self {
-        let mut memory = 0;
+        let (mut memory, mut signal) = (0, spec.measurements.len());
         let place = |(name, block): (String, Block)| {
-            let placed = Placed { name, memory, block };
+            let placed = Placed { name, memory, signal, block };
             memory += placed.block.states();
+            signal += placed.block.signals();
             placed
         };
         Self {
@@ -73,11 +77,13 @@ impl Diagram {
     pub fn memory<S: Scalar>(&self) -> Memory<S> {
         let states = self.blocks.iter().map(|b| b.block.states()).sum();
         let scratch = self.blocks.iter().map(|b| b.block.scratch()).max().unwrap_or(0);
+        let written: usize = self.blocks.iter().map(|b| b.block.signals()).sum();
         Memory {
             states: vec![S::zero(); states],
             limited: true,
+            linear: false,
             samples: 0,
-            signals: vec![S::zero(); self.measurement_names.len() + self.blocks.len()],
+            signals: vec![S::zero(); self.measurement_names.len() + written],
             scratch: vec![S::zero(); scratch],
         }
     }
@@ -121,7 +127,7 @@ impl Diagram {
     /// A wrong number of measurements, a value that is not finite, an input outside its table.
     pub fn step<S: Scalar>(&self, memory: &mut Memory<S>, measurements: &[S]) -> Result<(), ControlError> {
         memory.samples += 1;
-        let now = Instant { time: memory.samples as f64 * self.sample_time, interval: self.sample_time };
+        let now = Instant { sample: memory.samples, interval: self.sample_time, linear: memory.linear };
         self.sweep(memory, measurements, |block, states, scratch, signals| block.step(states, scratch, signals, now))
     }
 
@@ -134,7 +140,7 @@ impl Diagram {
         &self,
         memory: &mut Memory<S>,
         measurements: &[S],
-        mut law: impl FnMut(&Block, &mut [S], &mut [S], &[S]) -> Result<S, Outside>,
+        mut law: impl FnMut(&Block, &mut [S], &mut [S], (&[S], &mut [S])) -> Result<(), Outside>,
     ) -> Result<(), ControlError> {
         let offset = self.measurement_names.len();
         if measurements.len() != offset {
@@ -146,15 +152,16 @@ impl Diagram {
         }
         let Memory { states, signals, scratch, .. } = memory;
         signals[..offset].copy_from_slice(measurements);
-        for (i, Placed { name, block, memory }) in self.blocks.iter().enumerate() {
+        for Placed { name, block, memory, signal } in &self.blocks {
             let own = &mut states[*memory..*memory + block.states()];
-            let value = law(block, own, scratch, signals).map_err(|Outside { value, low, high }| {
+            let (before, after) = signals.split_at_mut(*signal);
+            let out = &mut after[..block.signals()];
+            law(block, own, scratch, (before, out)).map_err(|Outside { value, low, high }| {
                 ControlError::OutsideTable { block: name.clone(), value, low, high }
             })?;
-            if !value.value().is_finite() {
-                return Err(ControlError::NotFinite { block: name.clone(), value: value.value() });
+            if let Some(value) = out.iter().map(|y| y.value()).find(|y| !y.is_finite()) {
+                return Err(ControlError::NotFinite { block: name.clone(), value });
             }
-            signals[offset + i] = value;
         }
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! Discrete linear filters: a chain of second-order sections, and a state space of several inputs.
+//! Discrete linear filters: a chain of second-order sections, and a state space of several inputs and outputs.
 //! Their memory is the caller's; both know their steady state, so that a run starts without a jolt.
 
 use super::spec::Section;
@@ -41,6 +41,8 @@ impl Sections {
 /// x\[k+1\] = A x\[k\] + B u\[k\], y\[k\] = C x\[k\] + D u\[k\], matrices by rows in one piece each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateSpace {
+    /// States, inputs, outputs.
+    sizes: [usize; 3],
     a: Vec<f64>,
     b: Vec<f64>,
     c: Vec<f64>,
@@ -50,13 +52,17 @@ pub struct StateSpace {
 }
 
 impl StateSpace {
-    pub fn new(a: Vec<f64>, b: Vec<f64>, c: Vec<f64>, d: Vec<f64>) -> Self {
-        let steady = steady(&a, &b, c.len(), d.len());
-        Self { a, b, c, d, steady }
+    pub fn new(sizes: [usize; 3], [a, b, c, d]: [Vec<f64>; 4]) -> Self {
+        let steady = steady(&a, &b, sizes[0], sizes[1]);
+        Self { sizes, a, b, c, d, steady }
     }
 
     pub fn states(&self) -> usize {
-        self.c.len()
+        self.sizes[0]
+    }
+
+    pub fn outputs(&self) -> usize {
+        self.sizes[2]
     }
 
     /// Whether it stays somewhere for constant inputs: false with a pole at z = 1.
@@ -64,29 +70,27 @@ impl StateSpace {
         self.steady.is_some()
     }
 
-    /// Goes to the steady state and returns the output there.
-    pub fn reset<S: Scalar>(&self, memory: &mut [S], inputs: &[S]) -> S {
+    /// Goes to the steady state and writes the outputs there.
+    pub fn reset<S: Scalar>(&self, memory: &mut [S], inputs: &[S], out: &mut [S]) {
         if let Some(steady) = &self.steady {
-            for (x, row) in memory.iter_mut().zip(steady.chunks_exact(inputs.len().max(1))) {
-                *x = dot(row, inputs);
-            }
+            multiply(memory, [(steady, inputs)]);
         }
-        self.output(memory, inputs)
-    }
-
-    fn output<S: Scalar>(&self, memory: &[S], inputs: &[S]) -> S {
-        dot(&self.c, memory) + dot(&self.d, inputs)
+        multiply(out, [(&self.c, memory), (&self.d, inputs)]);
     }
 
     /// `next` is written over; it is as long as the memory.
-    pub fn step<S: Scalar>(&self, state: &mut [S], inputs: &[S], next: &mut [S]) -> S {
-        let (n, m) = (self.c.len(), self.d.len());
-        let y = self.output(state, inputs);
-        for (i, x) in next.iter_mut().enumerate() {
-            *x = dot(&self.a[i * n..][..n], state) + dot(&self.b[i * m..][..m], inputs);
-        }
+    pub fn step<S: Scalar>(&self, state: &mut [S], inputs: &[S], next: &mut [S], out: &mut [S]) {
+        multiply(out, [(&self.c, state), (&self.d, inputs)]);
+        multiply(next, [(&self.a, state), (&self.b, inputs)]);
         state.copy_from_slice(next);
-        y
+    }
+}
+
+/// A sum of matrices (by rows) times vectors.
+fn multiply<S: Scalar, const N: usize>(into: &mut [S], terms: [(&[f64], &[S]); N]) {
+    for (i, y) in into.iter_mut().enumerate() {
+        let row = |(matrix, x): &(&[f64], &[S])| dot(&matrix[i * x.len()..][..x.len()], x);
+        *y = terms.iter().fold(S::zero(), |sum, term| sum + row(term));
     }
 }
 
@@ -147,17 +151,41 @@ mod tests {
         let (b, a) = ([0.2, 0.3, -0.1], [-1.1, 0.4]);
         let (sections, mut x) = (Sections::new(vec![Section { b, a }]), [0.0; 2]);
         let c = vec![b[1] - b[0] * a[0], b[2] - b[0] * a[1]];
-        let space = StateSpace::new(vec![-a[0], -a[1], 1.0, 0.0], vec![1.0, 0.0], c, vec![b[0]]);
-        let (mut z, mut next) = ([0.0; 2], [0.0; 2]);
-        assert!((sections.reset(&mut x, 0.7) - space.reset(&mut z, &[0.7])).abs() < 1e-12);
+        let matrices = [vec![-a[0], -a[1], 1.0, 0.0], vec![1.0, 0.0], c, vec![b[0]]];
+        let space = StateSpace::new([2, 1, 1], matrices);
+        let (mut z, mut next, mut y) = ([0.0; 2], [0.0; 2], [0.0]);
+        space.reset(&mut z, &[0.7], &mut y);
+        assert!((sections.reset(&mut x, 0.7) - y[0]).abs() < 1e-12);
         for k in 0..50 {
             let u = (0.3 * f64::from(k)).sin();
-            assert!((sections.step(&mut x, u) - space.step(&mut z, &[u], &mut next)).abs() < 1e-12);
+            space.step(&mut z, &[u], &mut next, &mut y);
+            assert!((sections.step(&mut x, u) - y[0]).abs() < 1e-12);
         }
     }
 
     #[test]
+    fn several_outputs_of_several_inputs_by_hand() {
+        // x+ = 0.5 x + u - v, y = (x, 2 x + 3 v)
+        let space = StateSpace::new([1, 2, 2], [vec![0.5], vec![1.0, -1.0], vec![1.0, 2.0], vec![0.0, 0.0, 0.0, 3.0]]);
+        let (mut x, mut next, mut y) = ([0.0], [0.0], [0.0; 2]);
+        space.reset(&mut x, &[4.0, 1.0], &mut y);
+        assert_eq!((x, y), ([6.0], [6.0, 15.0]));
+        space.step(&mut x, &[0.0, 1.0], &mut next, &mut y);
+        assert_eq!((x, y), ([2.0], [6.0, 15.0]));
+        space.step(&mut x, &[0.0, 0.0], &mut next, &mut y);
+        assert_eq!(y, [2.0, 4.0]);
+    }
+
+    #[test]
+    fn without_states_it_is_a_matrix_of_gains() {
+        let space = StateSpace::new([0, 2, 1], [vec![], vec![], vec![], vec![2.0, -1.0]]);
+        let mut y = [0.0];
+        space.reset(&mut [], &[3.0, 1.0], &mut y);
+        assert_eq!(y, [5.0]);
+    }
+
+    #[test]
     fn an_integrator_has_no_steady_state() {
-        assert!(!StateSpace::new(vec![1.0], vec![1e-3], vec![1.0], vec![0.0]).settles());
+        assert!(!StateSpace::new([1, 1, 1], [vec![1.0], vec![1e-3], vec![1.0], vec![0.0]]).settles());
     }
 }

@@ -20,6 +20,7 @@ mod diagram;
 mod error;
 mod filter;
 mod lookup;
+mod noise;
 mod spec;
 
 pub use controller::Controller;

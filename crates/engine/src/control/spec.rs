@@ -86,7 +86,7 @@ pub enum Edge {
     Hold,
 }
 
-/// One block; it writes the one signal that carries its name.
+/// One block; it writes the one signal that carries its name, or those named in `outputs`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum BlockSpec {
@@ -105,9 +105,17 @@ pub enum BlockSpec {
     Quotient { name: String, numerator: String, denominator: String, floor: f64 },
     /// A linear filter as a chain of second-order sections; no pole at z = 1 (use `pi`).
     Filter { name: String, input: String, sections: Vec<Section> },
-    /// A linear filter x\[k+1\] = A x\[k\] + B u\[k\], y\[k\] = C x\[k\] + D u\[k\] of several inputs; rows of A and B;
-    /// no pole at z = 1 (use `pi`).
-    StateSpace { name: String, inputs: Vec<String>, a: Vec<Vec<f64>>, b: Vec<Vec<f64>>, c: Vec<f64>, d: Vec<f64> },
+    /// A linear filter x\[k+1\] = A x\[k\] + B u\[k\], y\[k\] = C x\[k\] + D u\[k\] of several inputs and outputs; matrices
+    /// by rows; no pole at z = 1 (use `pi`).
+    StateSpace {
+        name: String,
+        inputs: Vec<String>,
+        outputs: Vec<String>,
+        a: Vec<Vec<f64>>,
+        b: Vec<Vec<f64>>,
+        c: Vec<Vec<f64>>,
+        d: Vec<Vec<f64>>,
+    },
     /// proportional * e + integral of (integral * e) by the trapezoidal rule. While the output would pass a limit the
     /// integral stops growing towards it (anti-windup). The integral starts at zero.
     Pi {
@@ -138,11 +146,27 @@ pub enum BlockSpec {
         #[serde(default)]
         edge: Edge,
     },
+    /// The multiple of `step` (> 0) nearest to the input; in linear models and steady states the input itself.
+    Quantise { name: String, input: String, step: f64 },
+    /// White Gaussian noise of standard deviation `std` (>= 0), one draw a sample from `seed` and the sample's number
+    /// alone; in linear models and steady states nil.
+    Noise { name: String, std: f64, seed: u64 },
+    /// Every `samples`-th input (>= 1), that of the start included, held in between; in linear models the mean over the
+    /// last `samples` inputs, which is what does not depend on when they are taken.
+    Hold { name: String, input: String, samples: usize },
 }
 
 impl BlockSpec {
-    /// The name of the block and of the signal it writes.
-    pub fn name(&self) -> &str {
+    /// The signals that it writes.
+    pub fn signals(&self) -> &[String] {
+        match self {
+            Self::StateSpace { outputs, .. } => outputs,
+            _ => core::slice::from_ref(self.name()),
+        }
+    }
+
+    /// The name of the block, and of its signal if it has no outputs with names of their own.
+    pub fn name(&self) -> &String {
         match self {
             Self::Clock { name }
             | Self::Sum { name, .. }
@@ -154,7 +178,10 @@ impl BlockSpec {
             | Self::Saturation { name, .. }
             | Self::RateLimit { name, .. }
             | Self::Delay { name, .. }
-            | Self::Lookup { name, .. } => name,
+            | Self::Lookup { name, .. }
+            | Self::Quantise { name, .. }
+            | Self::Noise { name, .. }
+            | Self::Hold { name, .. } => name,
         }
     }
 }

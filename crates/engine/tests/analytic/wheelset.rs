@@ -1,7 +1,8 @@
 //! A single wheelset without suspension: its weight, Klingel's wave, the free rolling line of a curve.
 //! The derivations are in docs/theory/wheelset.md.
 
-use crate::common::{Plant, channel, cone, run, straight, track, wheelset};
+use crate::common::{Plant, channel, cone, run, spec, straight, track, wheelset};
+use klingel_engine::compile;
 use serde_json::{Value, json};
 
 /// Slope of the coned wheel; the rail leans in by as much, so it is touched on its 300 mm arc.
@@ -82,4 +83,63 @@ fn a_wheelset_rolls_freely_on_its_line_in_a_curve() {
             assert!(wheel.force_T.x().abs() < 3.0, "{:?}", wheel.force_T);
         }
     }
+}
+
+/// y = -dr/(2 cone) with a level axle: so far to the side the cones of unequal wheels, dr right minus left, are equally
+/// large where they touch, and touch where those of a centred wheelset do. Not the conicity of a curve, in which the
+/// axle rolls.
+///
+/// 2e-4: the tape circles move by 2 mm, over which the slope of the table is that of the cone to 1e-4.
+#[test]
+fn unequal_wheels_roll_where_they_are_equally_large() {
+    for dr in [2e-4, -2e-4] {
+        let mut case = coned(straight(100.0), 20.0, 0.01);
+        case["wheels"][0]["radius_offset"] = json!(-0.5 * dr);
+        case["wheels"][1]["radius_offset"] = json!(0.5 * dr);
+        let mut plant = Plant::new(&case);
+        let x = plant.equilibrium();
+        let (y, roll) = (x[plant.state("wheelset.y")], x[plant.state("wheelset.roll")]);
+        assert!((y / (-dr / (2.0 * CONE)) - 1.0).abs() < 2e-4, "{y} m");
+        assert!(roll.abs() < 1e-7, "{roll} rad");
+        plant.rates(&x);
+        assert!(plant.work.wheels.iter().all(|wheel| wheel.force_T.x().abs() < 3.0));
+    }
+}
+
+/// Wheels that are larger than their table by dr run as those of a table made for r0 + dr.
+///
+/// 1e-4 of the load in all forces: the table's patches are longer by half of dr/r0 = 2e-3 in one direction.
+#[test]
+fn larger_wheels_are_those_of_a_larger_table() {
+    let dr = 1e-3;
+    let curve = || track(100.0, [1.0 / 1000.0; 2], [0.05; 2]);
+    let mut offset = coned(curve(), 20.0, 0.01);
+    for wheel in 0..2 {
+        offset["wheels"][wheel]["radius_offset"] = json!(dr);
+    }
+    let mut larger = coned(curve(), 20.0, 0.01);
+    larger["contact_pairs"][0]["radius"] = json!(0.46 + dr);
+    larger["bodies"][0]["position"][2] = json!(-0.46 - dr);
+    let settled = |case: &Value| {
+        let mut plant = Plant::new(case);
+        let x = plant.equilibrium();
+        plant.rates(&x);
+        let names = ["wheelset.y", "wheelset.z", "wheelset.yaw", "wheelset.spin.spin_speed"];
+        (names.map(|name| x[plant.state(name)]), [0, 1].map(|side| plant.work.wheels[side].force_T.0))
+    };
+    let ((x, forces), (wanted_x, wanted_forces)) = (settled(&offset), settled(&larger));
+    for (value, wanted) in x.into_iter().zip(wanted_x) {
+        assert!((value - wanted).abs() < 1e-3 * wanted.abs() + 1e-9, "{value}, expected {wanted}");
+    }
+    for (force, wanted) in forces.into_iter().flatten().zip(wanted_forces.into_iter().flatten()) {
+        assert!((force - wanted).abs() < 1e-4 * 8900.0, "{force} N, expected {wanted} N");
+    }
+}
+
+#[test]
+fn far_too_large_wheels_are_refused() {
+    let mut case = coned(straight(100.0), 20.0, 0.01);
+    case["wheels"][1]["radius_offset"] = json!(0.46);
+    let message = compile(&spec(&case)).expect_err("no such wheel").to_string();
+    assert!(message.contains("wheelset.right.radius_offset") && message.contains("0.005"), "{message}");
 }
