@@ -9,11 +9,10 @@ from typing import Annotated
 
 import typer
 
-from klingel.cli import linear
+from klingel.cli import design, linear
 from klingel.cli.compare import compare
 from klingel.cli.output import kept, print_table
-from klingel.cli import design, linear
-from klingel.cli.output import print_table
+from klingel.cli.robustness import robustness
 
 app = typer.Typer(
     name="klingel",
@@ -29,6 +28,7 @@ app.command()(linear.rootlocus)
 app.command("critical-speed")(linear.critical_speed)
 app.command()(compare)
 app.command()(design.design)
+app.command()(robustness)
 
 
 def _version(wanted: bool) -> None:

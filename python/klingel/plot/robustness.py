@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
 from klingel.plot.style import GRID, INK, PALE, styled
 
@@ -96,30 +96,29 @@ def tornado(
         return figure
 
 
-def exceedance(values: Mapping[str, NDArray[np.float64]], *, title: str, label: str, limit: float | None) -> Figure:
-    """Share of the runs that exceed a value, over the value, on a logarithmic scale down to one run.
+def exceedance(values: Mapping[str, NDArray[np.float64]], limits: Mapping[str, float], *, title: str) -> Figure:
+    """Share of the runs that reach a value, over the value, down to one run: a panel a figure.
 
-    values: of each line by its name.
+    values: of all runs by the label of their axis, NaN where a run has none; limits: to draw, by the same labels.
     """
     with styled():
-        figure = Figure(figsize=(6.6, 3.2))
+        figure = Figure(figsize=(6.6, 1.2 + 1.9 * math.ceil(len(values) / 2)))
         FigureCanvasAgg(figure)
-        axes = figure.subplots()
-        least = 1.0
-        for name, found in values.items():
+        panels = figure.subplots(math.ceil(len(values) / 2), 2, squeeze=False, sharey=True).ravel()
+        for axes, (label, found) in zip(panels, values.items(), strict=False):
             ordered = np.sort(found[~np.isnan(found)])
-            share = 1.0 - np.arange(len(ordered)) / len(ordered)
-            axes.step(ordered, share, where="pre", color=LOW if len(values) == 1 else None, label=name)
-            least = min(least, 1.0 / max(len(ordered), 1))
-        if limit is not None:
-            axes.axvline(limit, color=BAD, lw=1.0, ls=(0, (4, 3)))
-        axes.set_yscale("log")
-        axes.set_ylim(0.7 * least, 1.2)
-        axes.set_xlabel(label)
-        axes.set_ylabel("share of the runs at or above")
-        axes.set_title(title)
-        if len(values) > 1:
-            axes.legend()
+            axes.step(ordered, 100.0 * (1.0 - np.arange(len(ordered)) / len(ordered)), where="pre", color=LOW)
+            if label in limits:
+                axes.axvline(limits[label], color=BAD, lw=1.0, ls=(0, (4, 3)))
+            axes.set_yscale("log")
+            axes.yaxis.set_major_formatter(FuncFormatter(lambda share, _: f"{share:g}"))
+            axes.yaxis.set_minor_formatter(NullFormatter())
+            axes.set_xlabel(label)
+        for axes in panels[len(values) :]:
+            axes.set_visible(False)
+        for axes in panels[::2]:
+            axes.set_ylabel("runs at or above  [%]")
+        figure.suptitle(title, x=0.01, ha="left", weight="bold", size=10)
         return figure
 
 

@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 import klingel
-from klingel import library, result
+from klingel import result
 from klingel.assess import curving
 from klingel.assess.header import course_of
+from klingel.control.sensor import whole_of
 from klingel.core import core
 from klingel.errors import InputError, SimulationError
 from klingel.lower import lower
-from klingel.scenario import Scenario, Strategy
+from klingel.scenario import Scenario
 from klingel.study import robustness_output as output
 from klingel.study.folder import conclude, study_folder
 from klingel.study.robustness_effects import EFFECTS, changed
@@ -28,7 +29,6 @@ from klingel.study.robustness_rows import Rows
 from klingel.study.runner import run_all
 from klingel.study.screen import console as default_console
 from klingel.study.screen import prepare
-from klingel.track.cases import perez2004
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,9 +43,6 @@ FIGURES = (
 """What is kept of each run, of `klingel.assess.COLUMNS`."""
 
 WORDS = ("flange_contact", "outcome")
-
-STEP = 1e-3
-"""Of the integration [s]: as in the variants of the study of the five curves."""
 
 INTERVAL = 2e-3
 """Longest interval of the samples that `klingel.assess.curving` takes [s]."""
@@ -80,20 +77,23 @@ class Plan:
     """Which runs a study consists of.
 
     scenario: recorded for what is assessed; chosen: the inputs; runs: the inputs of every run by its name, in order;
-    seed: of the draws.
+    seed: of the draws; left_out: inputs that this strategy does not feel.
     """
 
     scenario: Scenario
     chosen: Inputs
     runs: Mapping[str, Mapping[str, float]]
     seed: int
+    left_out: tuple[str, ...] = ()
 
     def of(self, name: str) -> Scenario:
         """The scenario of one run; errors: InputError for an unknown name."""
         if name not in self.runs:
             message = "is no run of this study"
             raise InputError.single("run", name, message, remedy="give a name such as drawn_0 of the table of runs")
-        return changed(self.scenario, self.runs[name])
+        part, _, number = name.partition("_")
+        seed = whole_of(self.seed, number) if part == "drawn" else None
+        return changed(self.scenario, self.runs[name], seed=seed)
 
 
 def plan_of(
@@ -107,40 +107,26 @@ def plan_of(
     if runs < 0 or (runs == 0 and not alone):
         raise InputError.single("runs", runs, "leaves nothing to run", remedy="give 1 or more")
     table = inputs() if chosen is None else dict(chosen)
-    table = {name: each for name, each in table.items() if EFFECTS[name].acts_on(scenario)}
+    felt = {name: each for name, each in table.items() if EFFECTS[name].acts_on(scenario)}
+    if not felt:
+        remedy = "choose inputs of the vehicle too, such as friction"
+        raise InputError.single("inputs", list(table), "are not felt by this strategy", remedy=remedy)
     base = recorded(scenario)
-    nominal = {name: n for name in table if (n := EFFECTS[name].nominal) is not None}
+    nominal = {name: n for name in felt if (n := EFFECTS[name].nominal) is not None}
     values: dict[str, Mapping[str, float]] = {"given": {}, "nominal": nominal}
     if alone:
-        for name, tried in levels(table).items():
+        for name, tried in levels(felt).items():
             for i, value in enumerate(tried):
                 values[f"alone_{name}_{i}"] = nominal | {name: value}
-    for i, drawn in enumerate(draw(table, runs, seed) if runs else []):
+    for i, drawn in enumerate(draw(felt, runs, seed) if runs else []):
         values[f"drawn_{i}"] = drawn
-    return Plan(base, table, values, seed)
+    return Plan(base, felt, values, seed, tuple(name for name in table if name not in felt))
 
 
 def recorded(scenario: Scenario) -> Scenario:
     """The scenario with nothing recorded beyond what is assessed: 500 Hz if the step divides it, no energy."""
     interval = max(1, int(INTERVAL / scenario.step * (1.0 + 1e-9))) * scenario.step
     return scenario.replace(record_interval=interval, energy=False)
-
-
-def scenario_of(radius: float, control: Strategy | None, *, vehicle: str | None = None) -> Scenario:
-    """One of the five curves of Perez et al. (2004) by its radius [m]; without a strategy the passive coach runs it.
-
-    Errors: InputError for another radius, with those there are.
-
-    >>> round(3.6 * scenario_of(800.0, None).speed)
-    176
-    """
-    cases = {case.radius: case for case in perez2004()}
-    if radius not in cases:
-        listed = ", ".join(f"R{known:.0f}" for known in cases)
-        raise InputError.single("curve", radius, "is not in the study of the five curves", remedy=f"use {listed}")
-    name = vehicle or ("manchester_coach" if control is None else "mechatronic_irw")
-    case = cases[radius]
-    return Scenario(library.vehicle(name), case.track, speed=case.speed, control=control, step=STEP)
 
 
 def run(
@@ -166,9 +152,9 @@ def run(
         scenario: through one curve; its step is kept.
         out: folder to write to; made if missing.
         runs: drawn ones; a study of more runs in the same folder goes on with those that are there.
-        seed: of the draws.
-        chosen: inputs and their distributions, those of `inputs()` if not given; inputs of the strategy are left out
-            where there is none.
+        seed: of the draws; left_out: inputs that this strategy does not feel.
+        chosen: inputs and their distributions, those of `inputs()` if not given; what acts through a
+            measurement that the strategy does not take is left out.
         alone: also try each input alone.
         jobs: runs at a time; one a processor if not given.
         fresh: forget what the folder holds.

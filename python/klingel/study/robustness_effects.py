@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from klingel.contact import CreepOptions
+from klingel.control.sensor import KINDS
 from klingel.errors import InputError
 from klingel.scenario import Scenario, Strategy
 from klingel.study.robustness_pairs import with_conicity
@@ -44,7 +45,8 @@ class Effect:
 
     unit: SI, of its values; title: in tables; shown, factor: the unit that people read, and how many of it make one of
     `unit`; nominal: value without effect, None where the scenario's own is meant; least, most: values that make sense;
-    steers: whether it acts on the strategy only; change: the scenario with the input at a value.
+    through: kinds of sensors that it acts through, none for what acts on the vehicle; change: the scenario with the
+    input at a value.
     """
 
     title: str
@@ -55,7 +57,7 @@ class Effect:
     most: float = math.inf
     shown: str = ""
     factor: float = 1.0
-    steers: bool = False
+    through: tuple[str, ...] = ()
 
     def check(self, key: str, value: float) -> None:
         """Errors: InputError for a value that makes no sense."""
@@ -64,8 +66,9 @@ class Effect:
             raise InputError.single(key, value, f"is out of range [{self.unit}]", remedy=remedy)
 
     def acts_on(self, scenario: Scenario) -> bool:
-        """Whether the scenario has what the input changes."""
-        return not self.steers or scenario.control is not None
+        """Whether the vehicle or, of the kinds of sensors, a measurement of its strategy is touched."""
+        words = {word for kind in self.through for word in KINDS[kind].quantities}
+        return not self.through or any(channel.rpartition(".")[2] in words for channel in measured(scenario))
 
     def text(self, value: float) -> str:
         """A value as people read it.
@@ -74,6 +77,19 @@ class Effect:
         ('8 t', '0.35')
         """
         return f"{value * self.factor:.4g} {self.shown}".rstrip()
+
+
+def measured(scenario: Scenario) -> list[str]:
+    """Channels that the strategy of a scenario measures.
+
+    >>> from klingel import library
+    >>> measured(Scenario(library.vehicle("manchester_coach"), Track.straight("500 m"), speed=30.0))
+    []
+    """
+    if scenario.control is None:
+        return []
+    spec = scenario.control.lower(scenario.vehicle, scenario.database or scenario.track, scenario.speed)
+    return [] if spec is None else list(spec["measurements"])
 
 
 def friction(scenario: Scenario, value: float) -> Scenario:
@@ -117,14 +133,39 @@ def believed(scenario: Scenario) -> Scenario:
     return scenario.replace(control=DesignedFor(control, scenario.vehicle))
 
 
+def radius_mismatch(scenario: Scenario, value: float) -> Scenario:
+    """Right minus left radius of every wheelset."""
+    return scenario.replace(radius_mismatch=value)
+
+
+def curvature_error(scenario: Scenario, value: float) -> Scenario:
+    """A database whose curvatures are all wrong by that share."""
+    known = scenario.database or scenario.track
+    return scenario.replace(database=known.mistaken(curvature_scale=1.0 + value))
+
+
+def with_sensors(scenario: Scenario, kinds: tuple[str, ...], **errors: float) -> Scenario:
+    """The scenario whose sensors of these kinds have these errors in place of their own."""
+    made: dict[str, Any] = {}
+    for kind in kinds:
+        sensor = getattr(scenario.sensors, kind) or KINDS[kind]()
+        made[kind] = dataclasses.replace(sensor, **errors)
+    return scenario.replace(sensors=dataclasses.replace(scenario.sensors, **made))
+
+
 def delay(scenario: Scenario, value: float) -> Scenario:
-    """Measurements later by that [s], in whole samples."""
-    held = scenario.control
-    strategy = held.strategy if isinstance(held, DesignedFor) else held
-    timing = strategy.timing  # type: ignore[union-attr]
-    late = dataclasses.replace(timing, sensor_samples=timing.sensor_samples + round(value / timing.sample_time))
-    slowed = dataclasses.replace(strategy, timing=late)  # type: ignore[type-var]
-    return scenario.replace(control=dataclasses.replace(held, strategy=slowed) if held is not strategy else slowed)
+    """Measurements that steer later by that [s], in whole samples of the controller; none for less than half of one."""
+    timing = getattr(scenario.control, "timing", None)
+    sample_time = timing.sample_time if timing is not None else scenario.step
+    late = round(value / sample_time) * sample_time
+    for kind in STEER:
+        sensor = getattr(scenario.sensors, kind) or KINDS[kind]()
+        scenario = with_sensors(scenario, (kind,), delay=sensor.delay + late)
+    return scenario
+
+
+STEER = tuple(kind for kind in KINDS if kind != "current")
+"""Kinds of sensors that steering goes by; currents are measured inside the drives, where nothing waits for a bus."""
 
 
 EFFECTS: Mapping[str, Effect] = {
@@ -132,23 +173,76 @@ EFFECTS: Mapping[str, Effect] = {
     "friction": Effect("friction", "1", friction, nominal=None, least=0.01, most=1.5),
     "creep_reduction": Effect("share of Kalker's slope", "1", creep_reduction, nominal=1.0, least=0.05, most=1.0),
     "payload": Effect("payload", "kg", payload, least=0.0, most=30e3, shown="t", factor=1e-3),
-    "delay": Effect("delay", "s", delay, least=0.0, most=1.0, shown="ms", factor=1e3, steers=True),
+    "radius_mismatch": Effect("radius mismatch", "m", radius_mismatch, least=-5e-3, most=5e-3, shown="mm", factor=1e3),
+    "curvature_error": Effect(
+        "curvature error", "1", curvature_error, least=-0.5, most=0.5, shown="%", factor=100.0, through=("position",)
+    ),
+    "position_error": Effect(
+        "position error",
+        "m",
+        lambda scenario, value: with_sensors(scenario, ("position",), bias=value),
+        least=-500.0,
+        most=500.0,
+        shown="m",
+        through=("position",),
+    ),
+    "delay": Effect("delay", "s", delay, least=0.0, most=1.0, shown="ms", factor=1e3, through=STEER),
+    "encoder_noise": Effect(
+        "encoder noise",
+        "rad/s",
+        lambda scenario, value: with_sensors(scenario, ("encoder",), noise=value),
+        least=0.0,
+        most=1.0,
+        shown="rad/s",
+        through=("encoder",),
+    ),
+    "gyro_noise": Effect(
+        "gyro noise",
+        "rad/s",
+        lambda scenario, value: with_sensors(scenario, ("gyro",), noise=value),
+        least=0.0,
+        most=1.0,
+        shown="mrad/s",
+        factor=1e3,
+        through=("gyro",),
+    ),
+    "gyro_bias": Effect(
+        "gyro bias",
+        "rad/s",
+        lambda scenario, value: with_sensors(scenario, ("gyro",), bias=value),
+        least=-0.5,
+        most=0.5,
+        shown="mrad/s",
+        factor=1e3,
+        through=("gyro",),
+    ),
+    "load_cell_bias": Effect(
+        "load cell bias",
+        "N m",
+        lambda scenario, value: with_sensors(scenario, ("load_cell",), bias=value),
+        least=-1e5,
+        most=1e5,
+        shown="N m",
+        through=("load_cell",),
+    ),
 }
 """Every input of the study, in the order of its tables."""
 
 
-def changed(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
-    """The scenario with inputs at their values; a creep law that takes a reduction is chosen if it is among them.
+def changed(scenario: Scenario, values: Mapping[str, float], *, seed: int | None = None) -> Scenario:
+    """The scenario with inputs at their values; its strategy stays designed for its vehicle as it was.
+
+    seed: of the sensors' noise, None for their own.
 
     >>> from klingel import control, library
     >>> vehicle, track = library.vehicle("mechatronic_irw"), Track.straight("500 m")
     >>> active = Scenario(vehicle, track, speed=30.0, control=control.IRWLike())
-    >>> heavy = changed(active, {"payload": 8e3, "friction": 0.2})
-    >>> heavy.vehicle.body.mass, heavy.control.vehicle.body.mass, heavy.friction
-    (40000.0, 32000.0, 0.2)
+    >>> heavy = changed(active, {"payload": 8e3, "friction": 0.2, "gyro_noise": 1e-3})
+    >>> heavy.vehicle.body.mass, heavy.control.vehicle.body.mass, heavy.friction, heavy.sensors.gyro.noise
+    (40000.0, 32000.0, 0.2, 0.001)
     """
     made = believed(scenario)
     for name, effect in EFFECTS.items():
         if name in values:
             made = effect.change(made, values[name])
-    return made
+    return made if seed is None else made.replace(sensors=dataclasses.replace(made.sensors, seed=seed))

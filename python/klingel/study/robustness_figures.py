@@ -4,7 +4,7 @@ Pure functions of the tables of runs."""
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -48,7 +48,7 @@ def probabilities(table: pd.DataFrame) -> pd.DataFrame:
     >>> probabilities(rows).iloc[0][["runs", "of", "probability"]].tolist()
     [1, 2, 0.5]
     """
-    events = {
+    events: dict[str, Any] = {
         f"|y| over {Y_LIMIT:g} mm, or not at the end": failed(table),
         f"|y| over {Y_LIMIT:g} mm": table["y_max_mm"] > Y_LIMIT,
         "contact in the flange root or on the flange": table["flange_contact"] != "",

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 LIMITS = {"y_max_mm": Y_LIMIT}
 """Of figures of merit, drawn in the pictures."""
 
-DISTINCT = ("y_max_mm", "lateral_force_max_kN", "attack_angle_max_mrad")
+DISTINCT = ("y_max_mm", "lateral_force_max_kN", "attack_angle_max_mrad", "wear_index_N")
 """Figures whose distribution is drawn."""
 
 
@@ -96,8 +96,6 @@ def _asked(made: Robustness, plan: Plan) -> Section:
             "high": EFFECTS[name].text(each.high),
             "distribution": _shape(name, each.kind, each.numbers),
             "nominal": "of the scenario" if (n := EFFECTS[name].nominal) is None else EFFECTS[name].text(n),
-            "status": each.status,
-            "reason": each.reason,
         }
         for name, each in plan.chosen.items()
     ]
@@ -120,6 +118,10 @@ def _asked(made: Robustness, plan: Plan) -> Section:
         "Inputs are independent of each other. The strategy is designed for the nominal vehicle in every run: what is "
         "drawn is unknown to it.",
     )
+    if plan.left_out:
+        titles = ", ".join(EFFECTS[name].title for name in plan.left_out)
+        facts["Left out"] = f"{titles}: the strategy measures nothing that they change"
+    facts |= {f"Range of {EFFECTS[name].title}": f"{each.reason} ({each.status})" for name, each in plan.chosen.items()}
     return Section("What was asked", words, tuple(tables), facts=facts)
 
 
@@ -132,27 +134,24 @@ def _often(made: Robustness, merits: tuple[str, ...]) -> Section:
     chances, spread = probabilities(made.drawn), percentiles(made.drawn, merits)
     write_table(made.out / "probabilities.csv", chances)
     write_table(made.out / "percentiles.csv", spread)
-    pictures = tuple(
-        _picture(
-            made,
-            f"exceedance_{figure}",
-            exceedance(
-                {"": made.drawn[figure].to_numpy(dtype=np.float64)},
-                title=f"Runs that reach a value: {HEADINGS[figure].name}",
-                label=heading(figure),
-                limit=LIMITS.get(figure),
-            ),
-            f"{HEADINGS[figure].meaning.capitalize()}: share of the drawn runs at or above each value.",
-        )
-        for figure in merits
-        if figure in DISTINCT
+    shown = [merit for merit in DISTINCT if merit in merits]
+    picture = _picture(
+        made,
+        "exceedance",
+        exceedance(
+            {heading(merit): made.drawn[merit].to_numpy(dtype=np.float64) for merit in shown},
+            {heading(merit): limit for merit, limit in LIMITS.items()},
+            title="How many runs reach a value",
+        ),
+        "Share of the drawn runs at or above each value. "
+        + "; ".join(f"{HEADINGS[m].name}: {HEADINGS[m].meaning}" for m in shown),
     )
     tables = (
         Listed("How often, with the 95 % interval of Clopper and Pearson", shown_probabilities(chances)),
         Listed("Percentiles over the runs that have the figure", shown_percentiles(spread)),
     )
     words = "A run that ended early counts with what it reached; in the first line it counts as failed."
-    return Section("How often, how much", (words,), tables, pictures)
+    return Section("How often, how much", (words,), tables, (picture,))
 
 
 def shown_probabilities(chances: pd.DataFrame) -> pd.DataFrame:
