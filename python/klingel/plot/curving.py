@@ -138,7 +138,7 @@ def per_radius(table: pd.DataFrame, name: str, *, looks: Mapping[str, Look] = LO
         axis.set_title(quantity.title, pad=10)
         table, ticks = _placed(table)
         if quantity.floor:
-            _floors(axis, table, quantity, by)
+            _floors(axis, table, quantity)
         for order, vehicle in enumerate(drawn):
             look = looks[vehicle]
             rows = table[table[by] == vehicle].sort_values("place")
@@ -181,22 +181,22 @@ def _placed(table: pd.DataFrame) -> tuple[pd.DataFrame, dict[float, str]]:
     return table.assign(place=place), dict(zip(places.values(), labels, strict=True))
 
 
-def _floors(axis: Axes, table: pd.DataFrame, quantity: RadiusFigure, by: str) -> None:
+def _floors(axis: Axes, table: pd.DataFrame, quantity: RadiusFigure) -> None:
     """The least achievable value, dotted: one line for all vehicles of the same mass."""
     groups: dict[tuple[tuple[float, float], ...], list[str]] = {}
-    known = table[table[quantity.floor].notna()].sort_values("place")
-    for vehicle, rows in known.groupby(by, sort=False):
+    known = table[table[quantity.floor].notna()].sort_values("place", kind="stable")
+    for vehicle, rows in known.drop_duplicates(["vehicle", "place"]).groupby("vehicle", sort=False):
         floor = tuple(zip(rows["place"], rows[quantity.floor].round(6), strict=True))
         groups.setdefault(floor, []).append(str(vehicle))
-    for floor, vehicles in groups.items():
-        passive = vehicles == ["passive"]
-        kinds = ", passive" if passive else ", active" if by == "vehicle" else f", {', '.join(vehicles)}"
+    for behind, (floor, vehicles) in zip(reversed(range(len(groups))), groups.items(), strict=True):
+        study = set(vehicles) <= set(LOOKS)
+        of = ", ".join(vehicles) if not study else "passive" if vehicles == ["passive"] else "active"
         axis.plot(
             *zip(*floor, strict=True),
             ls=":",
-            lw=1.2 if passive else 2.0,
-            color=PALE if passive else INK,
-            label=quantity.floor_label + (kinds if len(groups) > 1 else ""),
+            lw=max(0.8, 2.0 - 0.8 * behind),
+            color=PALE if behind else INK,
+            label=quantity.floor_label + (f", {of.replace('_', ' ')}" if len(groups) > 1 else ""),
             zorder=3,
         )
 

@@ -28,7 +28,10 @@ HEADINGS: Mapping[str, Heading] = {
     **OF_ASSESSMENT,
     "vehicle": Heading("vehicle", "", 0, "that the strategy is run on"),
 }
-"""Heading of every column of the table; that of one curve is also right for words."""
+"""Heading of every column of the table."""
+
+SHOWN = tuple(name for name in HEADINGS if name not in ("vehicle", "notes"))
+"""Columns of the results on the page; vehicles stand in what was run, notes below."""
 
 WORDS = ("strategy", "curve", "vehicle", "flange_contact", "outcome")
 """Columns of words, which stand on the left."""
@@ -88,9 +91,11 @@ def compare_report(page: ComparePage) -> Report:
             page=page,
             entries=[_entry(entry) for entry in page.entries],
             curves=[_curve(curve) for curve in page.curves],
-            headings=HEADINGS,
+            headings={name: HEADINGS[name] for name in SHOWN},
+            definitions_of=HEADINGS,
             words=WORDS,
-            rows=[{name: cell(name, row[name]) for name in HEADINGS} for row in page.table.to_dict("records")],
+            rows=[{name: cell(name, row[name]) for name in SHOWN} for row in page.table.to_dict("records")],
+            notes=notes(page.table),
             straight_heads=heads,
             straight_rows=straight,
             unknown=unknown(page.straight),
@@ -119,8 +124,17 @@ def _damping(rows: pd.DataFrame) -> str:
     if not len(rows) or rows["stable"].iloc[0] == "unknown":
         return "unknown"
     damping, frequency = float(rows["damping"].iloc[0]), float(rows["frequency_Hz"].iloc[0])
-    head = "unstable: " if damping < 0.0 else ""
-    return f"{head}{100.0 * damping:.1f} % at {frequency:.2f} Hz"
+    text = f"{100.0 * damping:.1f} % at {frequency:.2f} Hz"
+    return text if damping >= 0.0 else f"unstable: {text}, {rows['mode'].iloc[0]}"
+
+
+def notes(table: pd.DataFrame) -> dict[str, list[str]]:
+    """What a reader of the numbers should know, to the runs it holds for."""
+    found: dict[str, list[str]] = {}
+    for row in table.to_dict("records"):
+        if row["notes"]:
+            found.setdefault(str(row["notes"]), []).append(f"{row['strategy']}, {row['curve']}")
+    return found
 
 
 def unknown(straight: pd.DataFrame) -> dict[str, str]:
