@@ -1,12 +1,32 @@
 """Control strategies of mechatronic vehicles: small frozen objects that lower to the core's block diagrams.
-S and I of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 207-217, and no control at all."""
+S and I of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 207-217, others beside them, and none."""
 
 from klingel.control.basics import Timing
 from klingel.control.feedforward import ContactDesign
 from klingel.control.irw_like import IRWLike
+from klingel.control.lateral_feedback import LateralFeedback
 from klingel.control.passive import Passive
+from klingel.control.passive_irw import PassiveIRW
+from klingel.control.secondary_yaw import SecondaryYaw
 from klingel.control.slip import SlipControl
 from klingel.control.solid_like import SolidLike
 from klingel.control.traction import Traction
+from klingel.control.trailed_irw import TrailedIRW
+from klingel.control.yaw_moment import YawMoment
+from klingel.control.yaw_relaxation import YawRelaxation
 
-__all__ = ["ContactDesign", "IRWLike", "Passive", "SlipControl", "SolidLike", "Timing", "Traction"]
+__all__ = [
+    "ContactDesign",
+    "IRWLike",
+    "LateralFeedback",
+    "Passive",
+    "PassiveIRW",
+    "SecondaryYaw",
+    "SlipControl",
+    "SolidLike",
+    "Timing",
+    "Traction",
+    "TrailedIRW",
+    "YawMoment",
+    "YawRelaxation",
+]

@@ -56,6 +56,12 @@ def low_pass(frequency: float, *, sample_time: float, damping: float = 0.7) -> S
     return bilinear((w * w, 0.0, 0.0), (w * w, 2.0 * damping * w, 1.0), sample_time=sample_time, prewarp=w)
 
 
+def high_pass(frequency: float, *, sample_time: float, damping: float = 0.7) -> Section:
+    """Second-order high-pass with its corner at `frequency` [Hz]."""
+    w = 2.0 * math.pi * frequency
+    return bilinear((0.0, 0.0, 1.0), (w * w, 2.0 * damping * w, 1.0), sample_time=sample_time, prewarp=w)
+
+
 def slope_low_pass(frequency: float, *, sample_time: float, damping: float = 0.7) -> Section:
     """The time derivative behind a second-order low-pass with its corner at `frequency` [Hz]."""
     w = 2.0 * math.pi * frequency

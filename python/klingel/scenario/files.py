@@ -22,8 +22,11 @@ from klingel.vehicle import Vehicle
 
 STRATEGIES: dict[str, type[Any]] = {
     "passive": control.Passive,
+    "passive_irw": control.PassiveIRW,
+    "trailed_irw": control.TrailedIRW,
     "solid_like": control.SolidLike,
     "irw_like": control.IRWLike,
+    "yaw_moment": control.YawMoment,
 }
 """Names of strategies in files."""
 
