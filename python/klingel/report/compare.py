@@ -65,7 +65,7 @@ class ComparePage:
         entries: those compared, in the order of the table.
         curves: that they ran through.
         table: `strategy`, `curve` and the columns of `klingel.assess.COLUMNS`.
-        straight: `strategy`, `speed_kmh`, `stable`, `damping`, `frequency_Hz`, `mode`.
+        straight: `strategy`, `speed_kmh`, `stable`, `growth_per_s`, `damping`, `frequency_Hz`, `mode`.
         figures: `fig15` ... to the bytes of an SVG file.
         captions: of the figures, by the same names.
         failed: runs without figures, with the reason.
@@ -110,7 +110,7 @@ def compare_report(page: ComparePage) -> Report:
 def straight_cells(straight: pd.DataFrame) -> tuple[list[list[str]], list[str]]:
     """Stability on straight track as rows of text, a column a speed, and the heads of the columns.
 
-    A cell is the least damping ratio in percent with the frequency of its mode in Hz, or that it is unstable.
+    A cell is the least damping ratio in percent with the frequency of its mode in Hz, or what is unstable.
     """
     speeds = list(dict.fromkeys(straight["speed_kmh"]))
     rows = [
@@ -124,8 +124,11 @@ def _damping(rows: pd.DataFrame) -> str:
     if not len(rows) or rows["stable"].iloc[0] == "unknown":
         return "unknown"
     damping, frequency = float(rows["damping"].iloc[0]), float(rows["frequency_Hz"].iloc[0])
-    text = f"{100.0 * damping:.1f} % at {frequency:.2f} Hz"
-    return text if damping >= 0.0 else f"unstable: {text}, {rows['mode'].iloc[0]}"
+    swings = f"{100.0 * damping:.1f} % at {frequency:.2f} Hz"
+    if damping >= 0.0:
+        return swings
+    grows = f"grows by {float(rows['growth_per_s'].iloc[0]):.2g} 1/s"
+    return f"unstable, {rows['mode'].iloc[0]}: {swings if frequency > 0.0 else grows}"
 
 
 def notes(table: pd.DataFrame) -> dict[str, list[str]]:

@@ -17,8 +17,8 @@ from klingel.linear.sweep import Linearised, Sweep
 if TYPE_CHECKING:
     from klingel.study.compare_cases import Contender
 
-COLUMNS = ("strategy", "speed_kmh", "stable", "damping", "frequency_Hz", "mode")
-"""Of the table; `stable` is `yes`, `no` or `unknown`; damping ratio, frequency and name are those of the worst mode."""
+COLUMNS = ("strategy", "speed_kmh", "stable", "growth_per_s", "damping", "frequency_Hz", "mode")
+"""Of the table; `stable` is `yes`, `no` or `unknown`; all behind it are of the worst mode."""
 
 CHANGED = 1e-3
 """Relative distance to every eigenvalue of the vehicle alone from which one is the controllers' doing."""
@@ -36,9 +36,11 @@ def _row(contender: Contender, speed: float) -> Row:
     try:
         worst = least_damped(Sweep()(contender.straight(speed)))
     except Exception as error:  # whatever a user's strategy does
-        return head | {"stable": "unknown", "damping": float("nan"), "frequency_Hz": float("nan"), "mode": str(error)}
+        none = dict.fromkeys(("growth_per_s", "damping", "frequency_Hz"), float("nan"))
+        return head | {"stable": "unknown", **none, "mode": str(error)}
     return head | {
         "stable": "no" if worst.damping < 0.0 else "yes",
+        "growth_per_s": worst.eigenvalue.real,
         "damping": worst.damping,
         "frequency_Hz": worst.frequency,
         "mode": worst.name,
