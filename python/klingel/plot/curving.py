@@ -4,6 +4,7 @@ One history of the wheelsets in a curve, and four quantities over the curve radi
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -104,9 +105,10 @@ def displacement_history(
             axis.set_ylabel("y  [mm]")
             axis.set_xlim(time[0], time[-1])
             axis.axhline(0.0, color=INK, lw=0.6, zorder=1)
-        alike = [axis for axis, vehicle in zip(axes, runs, strict=True) if vehicle not in apart]
-        reach = max((abs(limit) for axis in alike for limit in axis.get_ylim()), default=1.0)
-        for axis in alike:
+        reaches = [max(map(abs, axis.get_ylim())) for axis in axes]
+        common = max((r for r, vehicle in zip(reaches, runs, strict=True) if vehicle not in apart), default=1.0)
+        for axis, vehicle, reached in zip(axes, runs, reaches, strict=True):
+            reach = reached if vehicle in apart else common
             axis.set_ylim(-reach, reach)
         axes[-1].set_xlabel("time  [s]")
         handles, labels = axes[0].get_legend_handles_labels()
@@ -189,16 +191,21 @@ def _floors(axis: Axes, table: pd.DataFrame, quantity: RadiusFigure) -> None:
         floor = tuple(zip(rows["place"], rows[quantity.floor].round(6), strict=True))
         groups.setdefault(floor, []).append(str(vehicle))
     for behind, (floor, vehicles) in zip(reversed(range(len(groups))), groups.items(), strict=True):
-        study = set(vehicles) <= set(LOOKS)
-        of = ", ".join(vehicles) if not study else "passive" if vehicles == ["passive"] else "active"
         axis.plot(
             *zip(*floor, strict=True),
             ls=":",
             lw=max(0.8, 2.0 - 0.8 * behind),
             color=PALE if behind else INK,
-            label=quantity.floor_label + (f", {of.replace('_', ' ')}" if len(groups) > 1 else ""),
+            label=_floor_label(quantity.floor_label, vehicles) if len(groups) > 1 else quantity.floor_label,
             zorder=3,
         )
+
+
+def _floor_label(label: str, vehicles: Sequence[str]) -> str:
+    """Whose floor it is: the study's vehicles by their kind, others by their names."""
+    if set(vehicles) <= set(LOOKS):
+        return f"{label}, {'passive' if list(vehicles) == ['passive'] else 'active'}"
+    return textwrap.fill(f"least of {', '.join(vehicles)}".replace("_", " "), 36)
 
 
 def _headroom(table: pd.DataFrame, quantity: RadiusFigure) -> float:

@@ -30,8 +30,8 @@ HEADINGS: Mapping[str, Heading] = {
 }
 """Heading of every column of the table."""
 
-SHOWN = tuple(name for name in HEADINGS if name not in ("vehicle", "notes"))
-"""Columns of the results on the page; vehicles stand in what was run, notes below."""
+SHOWN = tuple(name for name in HEADINGS if name not in ("vehicle", "radius_m", "speed_kmh", "notes"))
+"""Columns of the results on the page; vehicles and curves stand in what was run, notes below."""
 
 WORDS = ("strategy", "curve", "vehicle", "flange_contact", "outcome")
 """Columns of words, which stand on the left."""
@@ -85,11 +85,13 @@ class ComparePage:
 def compare_report(page: ComparePage) -> Report:
     """The page of a comparison."""
     straight, heads = straight_cells(page.straight)
+    entries, common = parted([_entry(entry) for entry in page.entries])
     vehicles: dict[str, Vehicle] = {entry.scenario.vehicle.name: entry.scenario.vehicle for entry in page.entries}
     return Report(
         template("compare.html").render(
             page=page,
-            entries=[_entry(entry) for entry in page.entries],
+            entries=entries,
+            common=common,
             curves=[_curve(curve) for curve in page.curves],
             headings={name: HEADINGS[name] for name in SHOWN},
             definitions_of=HEADINGS,
@@ -164,8 +166,21 @@ def _entry(entry: Entry) -> dict[str, str]:
         "friction": friction,
         "rail": f"{rail} at {scenario.rail_inclination:g}, gauge {1e3 * scenario.gauge:.1f} mm",
         "contact": f"{scenario.contact}, creep forces {scenario.creep_law}",
-        "step [ms]": f"{1e3 * scenario.step:g}",
+        "step": f"{1e3 * scenario.step:g} ms",
     }
+
+
+def parted(rows: Sequence[Mapping[str, str]]) -> tuple[list[dict[str, str]], dict[str, str]]:
+    """Rows without what is the same in all of them, and that; name and vehicle stay.
+
+    >>> parted([{"strategy": "a", "friction": "0.3"}, {"strategy": "b", "friction": "0.3"}])
+    ([{'strategy': 'a'}, {'strategy': 'b'}], {'friction': '0.3'})
+    """
+    stay = ("strategy", "drawn as", "vehicle")
+    common = {
+        key: value for key, value in rows[0].items() if key not in stay and all(row[key] == value for row in rows)
+    }
+    return [{key: value for key, value in row.items() if key not in common} for row in rows], common
 
 
 def _curve(curve: Curve) -> dict[str, str]:
