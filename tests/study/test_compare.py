@@ -237,7 +237,7 @@ def test_ctrl_c_writes_what_is_finished(simulated, undrawn, tmp_path, monkeypatc
     assert len(pd.read_csv(tmp_path / "summary.csv")) == 1
 
 
-def test_a_small_comparison_through_the_core(tmp_path: Path) -> None:
+def test_a_small_comparison_through_the_core(undrawn, tmp_path):
     done = compare(["passive:step=1 ms", "irw_like"], curves=SHORT, out=tmp_path, jobs=2, console=QUIET)
     assert set(done.table["outcome"]) == {"completed"}
     assert done.table["y_max_mm"].notna().all()
