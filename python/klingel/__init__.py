@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from klingel.doctor import warn_if_stale
 
 if TYPE_CHECKING:
-    from klingel import assess, contact, control, drives, library, linear, plot, report, study, track
+    from klingel import assess, contact, control, design, drives, library, linear, plot, report, study, track
     from klingel.linear import linearise
     from klingel.result import load, progress, save, simulate, simulate_spec
     from klingel.scenario import Scenario
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
-_MODULES = ("assess", "contact", "control", "drives", "library", "linear", "plot", "report", "study", "track")
+_MODULES = ("assess", "contact", "control", "design", "drives", "library", "linear", "plot", "report", "study", "track")
 
 _HOMES = {
     "Scenario": "klingel.scenario",
@@ -40,6 +40,7 @@ __all__ = [
     "assess",
     "contact",
     "control",
+    "design",
     "drives",
     "library",
     "linear",

@@ -25,6 +25,7 @@ FLOORS = [
     {"lower"},
     {"result"},
     {"linear"},
+    {"design"},
     {"assess"},
     {"plot"},
     {"report"},

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from klingel.cli import linear
+from klingel.cli import design, linear
 from klingel.cli.compare import compare
 from klingel.cli.output import kept, print_table
 
@@ -26,6 +26,7 @@ app.command()(linear.modes)
 app.command()(linear.rootlocus)
 app.command("critical-speed")(linear.critical_speed)
 app.command()(compare)
+app.command()(design.design)
 
 
 def _version(wanted: bool) -> None:

@@ -1,0 +1,27 @@
+"""Design bench of controllers: loops of a strategy on the full vehicle and their margins.
+Definitions and derivations: docs/theory/design.md."""
+
+from klingel.design.check import Check, check
+from klingel.design.limits import Limits, judged, limits
+from klingel.design.loops import Loop, loops
+from klingel.design.margins import Margins, margins, margins_of
+from klingel.design.tune import Design, speed_loop, steering_loop, torque_loop, tune, yaw_moment_loop
+
+__all__ = [
+    "Check",
+    "Design",
+    "Limits",
+    "Loop",
+    "Margins",
+    "check",
+    "judged",
+    "limits",
+    "loops",
+    "margins",
+    "margins_of",
+    "speed_loop",
+    "steering_loop",
+    "torque_loop",
+    "tune",
+    "yaw_moment_loop",
+]
