@@ -3,9 +3,10 @@ Real runs are tried by the study's own command and by the engine's tests."""
 
 from __future__ import annotations
 
+import functools
 import time
+from types import SimpleNamespace
 
-import numpy as np
 import pandas as pd
 import pytest
 from rich.console import Console
@@ -19,42 +20,6 @@ from klingel.study.cases import MAIN, study_runs
 from klingel.study.runner import run_all
 
 QUIET = Console(quiet=True)
-
-
-class Watch:
-    """A stand-in for the core's progress object."""
-
-    def __init__(self):
-        self.fraction = 0.0
-        self.cancelled = False
-
-    def cancel(self):
-        self.cancelled = True
-
-
-@pytest.fixture
-def simulated(synthetic, monkeypatch):
-    """Replaces the simulator; returns the scenarios that were asked for."""
-    asked = []
-
-    def simulate(scenario, *, progress):
-        asked.append(scenario)
-        progress.fraction = 1.0
-        active = scenario.control is not None
-        radius = 1.0 / max(abs(c) for segment in scenario.track.segments for c in segment.curvature)
-        k = 1.0 if active else 4.0
-        shapes = {
-            "bogie1.wheelset1.y": lambda t: 1.5e-3 * k * np.exp(-((t - 5.0) ** 2)),
-            "bogie1.wheelset1.yaw": 1e-3 * k,
-            "bogie1.wheelset1.left.Y": -22e3,
-            "bogie1.wheelset1.left.tgamma": 250.0 * k,
-        }
-        settings = {"speed": scenario.speed, "friction": scenario.friction, "active": active}
-        return synthetic.run(shapes, radius=radius, **settings)
-
-    monkeypatch.setattr(result, "simulate", simulate)
-    monkeypatch.setattr(result, "progress", Watch)
-    return asked
 
 
 def test_the_study_is_three_vehicles_in_five_curves_and_variants():
@@ -190,6 +155,7 @@ def test_the_screen_shows_table_1_and_the_summary(simulated, tmp_path):
 
 
 def test_runner_reports_progress_in_order():
-    batch = run_all(["b", "a"], lambda name, watch: (name, watch.fraction), Watch, jobs=1, console=QUIET)
+    watched = functools.partial(SimpleNamespace, fraction=0.0)
+    batch = run_all(["b", "a"], lambda name, watch: (name, watch.fraction), watched, jobs=1, console=QUIET)
     assert list(batch.done.items()) == [("b", ("b", 0.0)), ("a", ("a", 0.0))]
     assert not batch.interrupted

@@ -4,6 +4,7 @@ One history of the wheelsets in a curve, and four quantities over the curve radi
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -104,9 +105,10 @@ def displacement_history(
             axis.set_ylabel("y  [mm]")
             axis.set_xlim(time[0], time[-1])
             axis.axhline(0.0, color=INK, lw=0.6, zorder=1)
-        alike = [axis for axis, vehicle in zip(axes, runs, strict=True) if vehicle not in apart]
-        reach = max((abs(limit) for axis in alike for limit in axis.get_ylim()), default=1.0)
-        for axis in alike:
+        reaches = [max(map(abs, axis.get_ylim())) for axis in axes]
+        common = max((r for r, vehicle in zip(reaches, runs, strict=True) if vehicle not in apart), default=1.0)
+        for axis, vehicle, reached in zip(axes, runs, reaches, strict=True):
+            reach = reached if vehicle in apart else common
             axis.set_ylim(-reach, reach)
         axes[-1].set_xlabel("time  [s]")
         handles, labels = axes[0].get_legend_handles_labels()
@@ -138,7 +140,7 @@ def per_radius(table: pd.DataFrame, name: str, *, looks: Mapping[str, Look] = LO
         axis.set_title(quantity.title, pad=10)
         table, ticks = _placed(table)
         if quantity.floor:
-            _floors(axis, table, quantity, by)
+            _floors(axis, table, quantity)
         for order, vehicle in enumerate(drawn):
             look = looks[vehicle]
             rows = table[table[by] == vehicle].sort_values("place")
@@ -181,24 +183,29 @@ def _placed(table: pd.DataFrame) -> tuple[pd.DataFrame, dict[float, str]]:
     return table.assign(place=place), dict(zip(places.values(), labels, strict=True))
 
 
-def _floors(axis: Axes, table: pd.DataFrame, quantity: RadiusFigure, by: str) -> None:
+def _floors(axis: Axes, table: pd.DataFrame, quantity: RadiusFigure) -> None:
     """The least achievable value, dotted: one line for all vehicles of the same mass."""
     groups: dict[tuple[tuple[float, float], ...], list[str]] = {}
-    known = table[table[quantity.floor].notna()].sort_values("place")
-    for vehicle, rows in known.groupby(by, sort=False):
+    known = table[table[quantity.floor].notna()].sort_values("place", kind="stable")
+    for vehicle, rows in known.drop_duplicates(["vehicle", "place"]).groupby("vehicle", sort=False):
         floor = tuple(zip(rows["place"], rows[quantity.floor].round(6), strict=True))
         groups.setdefault(floor, []).append(str(vehicle))
-    for floor, vehicles in groups.items():
-        passive = vehicles == ["passive"]
-        kinds = ", passive" if passive else ", active" if by == "vehicle" else f", {', '.join(vehicles)}"
+    for behind, (floor, vehicles) in zip(reversed(range(len(groups))), groups.items(), strict=True):
         axis.plot(
             *zip(*floor, strict=True),
             ls=":",
-            lw=1.2 if passive else 2.0,
-            color=PALE if passive else INK,
-            label=quantity.floor_label + (kinds if len(groups) > 1 else ""),
+            lw=max(0.8, 2.0 - 0.8 * behind),
+            color=PALE if behind else INK,
+            label=_floor_label(quantity.floor_label, vehicles) if len(groups) > 1 else quantity.floor_label,
             zorder=3,
         )
+
+
+def _floor_label(label: str, vehicles: Sequence[str]) -> str:
+    """Whose floor it is: the study's vehicles by their kind, others by their names."""
+    if set(vehicles) <= set(LOOKS):
+        return f"{label}, {'passive' if list(vehicles) == ['passive'] else 'active'}"
+    return textwrap.fill(f"least of {', '.join(vehicles)}".replace("_", " "), 36)
 
 
 def _headroom(table: pd.DataFrame, quantity: RadiusFigure) -> float:

@@ -28,7 +28,10 @@ HEADINGS: Mapping[str, Heading] = {
     **OF_ASSESSMENT,
     "vehicle": Heading("vehicle", "", 0, "that the strategy is run on"),
 }
-"""Heading of every column of the table; that of one curve is also right for words."""
+"""Heading of every column of the table."""
+
+SHOWN = tuple(name for name in HEADINGS if name not in ("vehicle", "radius_m", "speed_kmh", "notes"))
+"""Columns of the results on the page; vehicles and curves stand in what was run, notes below."""
 
 WORDS = ("strategy", "curve", "vehicle", "flange_contact", "outcome")
 """Columns of words, which stand on the left."""
@@ -62,7 +65,7 @@ class ComparePage:
         entries: those compared, in the order of the table.
         curves: that they ran through.
         table: `strategy`, `curve` and the columns of `klingel.assess.COLUMNS`.
-        straight: `strategy`, `speed_kmh`, `stable`, `damping`, `frequency_Hz`, `mode`.
+        straight: `strategy`, `speed_kmh`, `stable`, `growth_per_s`, `damping`, `frequency_Hz`, `mode`.
         figures: `fig15` ... to the bytes of an SVG file.
         captions: of the figures, by the same names.
         failed: runs without figures, with the reason.
@@ -82,15 +85,19 @@ class ComparePage:
 def compare_report(page: ComparePage) -> Report:
     """The page of a comparison."""
     straight, heads = straight_cells(page.straight)
+    entries, common = parted([_entry(entry) for entry in page.entries])
     vehicles: dict[str, Vehicle] = {entry.scenario.vehicle.name: entry.scenario.vehicle for entry in page.entries}
     return Report(
         template("compare.html").render(
             page=page,
-            entries=[_entry(entry) for entry in page.entries],
+            entries=entries,
+            common=common,
             curves=[_curve(curve) for curve in page.curves],
-            headings=HEADINGS,
+            headings={name: HEADINGS[name] for name in SHOWN},
+            definitions_of=HEADINGS,
             words=WORDS,
-            rows=[{name: cell(name, row[name]) for name in HEADINGS} for row in page.table.to_dict("records")],
+            rows=[{name: cell(name, row[name]) for name in SHOWN} for row in page.table.to_dict("records")],
+            notes=notes(page.table),
             straight_heads=heads,
             straight_rows=straight,
             unknown=unknown(page.straight),
@@ -105,7 +112,7 @@ def compare_report(page: ComparePage) -> Report:
 def straight_cells(straight: pd.DataFrame) -> tuple[list[list[str]], list[str]]:
     """Stability on straight track as rows of text, a column a speed, and the heads of the columns.
 
-    A cell is the least damping ratio in percent with the frequency of its mode in Hz, or that it is unstable.
+    A cell is the least damping ratio in percent with the frequency of its mode in Hz, or what is unstable.
     """
     speeds = list(dict.fromkeys(straight["speed_kmh"]))
     rows = [
@@ -119,8 +126,20 @@ def _damping(rows: pd.DataFrame) -> str:
     if not len(rows) or rows["stable"].iloc[0] == "unknown":
         return "unknown"
     damping, frequency = float(rows["damping"].iloc[0]), float(rows["frequency_Hz"].iloc[0])
-    head = "unstable: " if damping < 0.0 else ""
-    return f"{head}{100.0 * damping:.1f} % at {frequency:.2f} Hz"
+    swings = f"{100.0 * damping:.1f} % at {frequency:.2f} Hz"
+    if damping >= 0.0:
+        return swings
+    grows = f"grows by {float(rows['growth_per_s'].iloc[0]):.2g} 1/s"
+    return f"unstable, {rows['mode'].iloc[0]}: {swings if frequency > 0.0 else grows}"
+
+
+def notes(table: pd.DataFrame) -> dict[str, list[str]]:
+    """What a reader of the numbers should know, to the runs it holds for."""
+    found: dict[str, list[str]] = {}
+    for row in table.to_dict("records"):
+        if row["notes"]:
+            found.setdefault(str(row["notes"]), []).append(f"{row['strategy']}, {row['curve']}")
+    return found
 
 
 def unknown(straight: pd.DataFrame) -> dict[str, str]:
@@ -147,8 +166,21 @@ def _entry(entry: Entry) -> dict[str, str]:
         "friction": friction,
         "rail": f"{rail} at {scenario.rail_inclination:g}, gauge {1e3 * scenario.gauge:.1f} mm",
         "contact": f"{scenario.contact}, creep forces {scenario.creep_law}",
-        "step [ms]": f"{1e3 * scenario.step:g}",
+        "step": f"{1e3 * scenario.step:g} ms",
     }
+
+
+def parted(rows: Sequence[Mapping[str, str]]) -> tuple[list[dict[str, str]], dict[str, str]]:
+    """Rows without what is the same in all of them, and that; name and vehicle stay.
+
+    >>> parted([{"strategy": "a", "friction": "0.3"}, {"strategy": "b", "friction": "0.3"}])
+    ([{'strategy': 'a'}, {'strategy': 'b'}], {'friction': '0.3'})
+    """
+    stay = ("strategy", "drawn as", "vehicle")
+    common = {
+        key: value for key, value in rows[0].items() if key not in stay and all(row[key] == value for row in rows)
+    }
+    return [{key: value for key, value in row.items() if key not in common} for row in rows], common
 
 
 def _curve(curve: Curve) -> dict[str, str]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,11 +23,11 @@ from klingel.track.cases import Case, perez2004
 from klingel.units import Quantity, to_si
 from klingel.vehicle import Vehicle
 
-MADE_FOR: Mapping[type[Any], str] = {control.Passive: "manchester_coach"}
-"""Vehicle of the library that a strategy is made for, where it is not `USUAL`."""
+COACH = "manchester_coach"
+"""Vehicle that runs without control."""
 
-USUAL = "mechatronic_irw"
-"""Vehicle of all other strategies, and of a user's own."""
+VEHICLES = ("mechatronic_irw", "trailed_irw", "mechatronic_solid", "actuated_coach")
+"""Vehicles of the library in the order in which a strategy is tried on them, then all others."""
 
 STEP_SAFE = 0.5e-3
 """Integration step of strategies that `klingel.study.cases.STEP` says nothing of [s]."""
@@ -137,10 +137,25 @@ def _scenario(what: object, first: Case, vehicle: str | Vehicle | None, settings
         remedy = "give a text, a Strategy, None or a Scenario"
         raise InputError.single("strategies", what, "is no strategy", remedy=remedy)
     steering: Strategy | None = what  # type: ignore[assignment]  # it has what a Strategy has
-    made_for = MADE_FOR.get(type(what if what is not None else control.Passive()), USUAL)
-    chosen = _vehicle(made_for if vehicle is None else vehicle)
+    chosen = made_for(steering) if vehicle is None else _vehicle(vehicle)
     step = {"step": STEP_SAFE} | dict(settings)
     return Scenario(chosen, first.track, speed=first.speed, control=steering, **step)
+
+
+def made_for(steering: Strategy | None) -> Vehicle:
+    """The vehicle of the library that a strategy is made for: the first that it says it fits.
+
+    A strategy that says nothing gets the mechatronic vehicle with independent wheels, as does one that fits none.
+
+    >>> made_for(None).name, made_for(control.IRWLike()).name
+    ('manchester_coach', 'mechatronic_irw')
+    """
+    if steering is None or isinstance(steering, control.Passive):
+        return library.vehicle(COACH)
+    problems = getattr(steering, "problems", lambda _: ())
+    others = [name for name in library.names() if name not in VEHICLES]
+    tried = (library.vehicle(name) for name in (*VEHICLES, *others))
+    return next((each for each in tried if not list(problems(each))), library.vehicle(VEHICLES[0]))
 
 
 def slug(name: str) -> str:
@@ -275,12 +290,13 @@ def _of_track(track: Track, speed: float, given: object) -> Case:
     return Case(round(1.0 / abs(course.curvature), 6), speed, track)
 
 
-def _distinct(cases: Iterable[Case]) -> Iterator[Case]:
+def _distinct(cases: Sequence[Case]) -> Iterator[Case]:
     """Cases whose tracks have different names: with the speed, then a number, where they would share one."""
-    seen: set[str] = set()
-    for case in cases:
-        name = case.track.name or f"R{case.radius:g}"
-        tries = iter([name, f"{name}_{3.6 * case.speed:.0f}kmh", *(f"{name}_{i}" for i in range(2, 100))])
-        free = next(each for each in tries if each not in seen)
-        seen.add(free)
-        yield dataclasses.replace(case, track=dataclasses.replace(case.track, name=free))
+    names = [case.track.name or f"R{case.radius:g}" for case in cases]
+    fast = [
+        f"{name}_{3.6 * case.speed:.0f}kmh" if names.count(name) > 1 else name
+        for name, case in zip(names, cases, strict=True)
+    ]
+    for i, (case, name) in enumerate(zip(cases, fast, strict=True)):
+        own = f"{name}_{fast[: i + 1].count(name)}" if fast.count(name) > 1 else name
+        yield dataclasses.replace(case, track=dataclasses.replace(case.track, name=own))

@@ -36,7 +36,7 @@ SHOWN = (
 )  # fmt: skip
 """Columns on the screen; the file has all."""
 
-OUT_OF_SCALE = 2.5
+OUT_OF_SCALE = 2.0
 """A history larger than so many times the median of all has a scale of its own."""
 
 CAPTIONS = {
