@@ -50,9 +50,12 @@ class Feedforward(SolidLike):
         d = Diagram(sample_time=self.timing.sample_time)
         expect_inertia(d, plant, track)
         motors = motors_of(vehicle, self.traction, self.timing, speed) if vehicle.independent_wheels else None
+        if motors is not None:
+            for w in WHEELSETS:
+                self._speed_error(d, plant, w, track)
         for w in WHEELSETS:
             if motors is not None:
-                self._speed_loop(d, plant, motors, w, track)
+                self._speed_loop(d, plant, motors, w)
             forward = database_feedforward(d, plant, self.contact, w, track, self.timing)
             steer(d, plant, w, {forward.moment: 1.0}, self.timing)
         return d.spec()
