@@ -85,6 +85,23 @@ def traction(
         body.run(out, jobs=jobs, parts=only or PARTS)
 
 
+@study.command()
+def errors(
+    strategies: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[STRATEGY]...", help="As for compare; default: S, I with gyros and database, trailed."),
+    ] = None,
+    curve: Annotated[list[str] | None, typer.Option(help="As for compare; may be repeated. Default: the five.")] = None,
+    out: Annotated[Path, typer.Option(help="Folder for figure, report and table.")] = Path("out/errors"),
+    jobs: Annotated[int | None, typer.Option(min=1, help="Runs at a time; default: one per processor.")] = None,
+) -> None:
+    """Each error alone: unequal wheels, delay, wrong curvature and position, noise; which strategy withstands it."""
+    from klingel.study import errors as body
+
+    with kept():
+        body.run(out, strategies=strategies or body.STRATEGIES, curves=curve or None, jobs=jobs)
+
+
 @app.command()
 def run(
     scenario: Annotated[Path, typer.Argument(help="Scenario file (TOML).")],
