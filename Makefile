@@ -37,15 +37,15 @@ validate: build ## every validation case; writes docs/validation.md
 lint: build ## rustfmt, clippy, ruff, mypy
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
-	$(BIN)/ruff format --check python tests validation benches
-	$(BIN)/ruff check python tests validation benches
+	$(BIN)/ruff format --check python tests validation benches examples
+	$(BIN)/ruff check python tests validation benches examples
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest klingel._core
 
 format: $(VENV)/.packages ## format Rust and Python
 	cargo fmt --all
-	$(BIN)/ruff format python tests validation benches
-	$(BIN)/ruff check --fix python tests validation benches
+	$(BIN)/ruff format python tests validation benches examples
+	$(BIN)/ruff check --fix python tests validation benches examples
 
 bench: build ## benchmarks: Rust; linear models and root loci
 	cargo bench --workspace --locked

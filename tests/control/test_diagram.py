@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from klingel.control.diagram import Diagram
-from klingel.control.discrete import bilinear, lead, low_pass, notch, slope_low_pass
+from klingel.control.discrete import bilinear, lead, low_pass, notch, slope_low_pass, transfer_function
 from klingel.control.response import controller_response
+from klingel.errors import InputError
 
 TS = 1e-3
 SLOW = 2.0 * np.pi * np.array([0.1, 1.0, 5.0])
@@ -36,6 +37,34 @@ def test_notch_and_lead() -> None:
 def test_bilinear_of_a_gain_is_the_gain() -> None:
     section = bilinear((3.0, 0.0, 0.0), (1.0, 0.0, 0.0), sample_time=TS)
     np.testing.assert_allclose(section.response(SLOW, TS), 3.0)
+
+
+@pytest.mark.parametrize(
+    ("numerator", "denominator"),
+    [
+        ([3.0], [2.0]),
+        ([1.0, 2.0], [0.1, 1.0]),
+        ([1.0, 0.0], [1e-4, 0.02, 0.3, 1.0]),
+        ([2.0], [1e-6, 3e-4, 0.02, 0.2, 1.0]),
+    ],
+)
+def test_a_transfer_function_of_any_order_is_a_chain_of_sections(
+    numerator: list[float], denominator: list[float]
+) -> None:
+    chain = transfer_function(numerator, denominator, sample_time=TS)
+    response = np.prod([section.response(SLOW, TS) for section in chain], axis=0)
+    # the bilinear rule is exact at the frequency that it takes for another one
+    s = 2j / TS * np.tan(0.5 * SLOW * TS)
+    np.testing.assert_allclose(response, np.polyval(numerator, s) / np.polyval(denominator, s), rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("numerator", "denominator", "word"),
+    [([1.0], [1.0, 0.0], "pole at s = 0"), ([1.0, 0.0], [2.0], "lower order"), ([0.0], [1.0], "is nil")],
+)
+def test_bad_transfer_functions_are_refused(numerator: list[float], denominator: list[float], word: str) -> None:
+    with pytest.raises(InputError, match=word):
+        transfer_function(numerator, denominator, sample_time=TS)
 
 
 def test_response_of_a_scheduled_pi_with_delay() -> None:

@@ -1,114 +1,31 @@
 """Controllers of one's own: one controller in three forms gives one result; bad ones end their run and no other.
-The controller: wheelsets of trailed independently rotating wheels are steered to the speed difference of rolling."""
+The examples run, and what the page about them shows is theirs."""
 
 from __future__ import annotations
 
+import _thread
 import math
+import re
+import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import pytest
 import xarray as xr
 
 import control as python_control
 import klingel as kl
-from klingel.control import (
-    WHEELSETS,
-    Composed,
-    Diagram,
-    DiscreteController,
-    Plant,
-    PythonController,
-    Timing,
-    command_steering,
-    low_pass,
-    speed_difference,
-)
+import own_strategy
+import three_forms
+from klingel.control import DiscreteController, PythonController
 from klingel.control.state_space import split
-from klingel.errors import InputError, SimulationError
+from klingel.errors import InputError, RunCancelledError, SimulationError
 from klingel.lower import lower
 from klingel.study.runner import run_all
-
-TS = 1e-3
-FREQUENCY, GAIN, RATE = 1.5, 6e4, 4e4
-"""Corner of the low-pass of the yaw rate [Hz]; proportional [N m s/rad] and integral [N m/rad] gain."""
-
-VEHICLE = kl.library.vehicle("trailed_irw")
-UNDELAYED = Timing(TS, 0, 0)
-PLANT = Plant.of(VEHICLE)
-LOW = low_pass(FREQUENCY, sample_time=TS)
-PER_MOMENT = 1.0 / (2.0 * PLANT.steering.half_spacing)
-SIDES = (("left", 1.0), ("right", -1.0))
-COMMANDS = [f"{w.name}.actuator_{side}.force" for w in WHEELSETS for side, _ in SIDES]
-MEASURED = [f"{w.name}.{what}" for w in WHEELSETS for what in ("yaw_rate", "left.spin_speed", "right.spin_speed")]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Blocks(Composed):
-    """As standard blocks."""
-
-    timing: Timing = UNDELAYED
-
-    def build(self, d: Diagram, vehicle: kl.Vehicle, track: kl.Track, speed: float) -> None:
-        for w in WHEELSETS:
-            rate = d.filter(f"{w.name}.rate", d.measure(f"{w.name}.yaw_rate"), [LOW])
-            wd = speed_difference(d, w, self.timing)
-            error = d.sum(f"{w.name}.error", {rate: PLANT.speed_ratio, wd: -1.0})
-            moment = d.pi(f"{w.name}.moment", error, proportional=GAIN, integral=RATE)
-            command_steering(d, PLANT, w, moment, self.timing)
-
-
-class Stepped:
-    """As a class."""
-
-    def reset(self) -> None:
-        self.filters: dict[str, list[float]] = {}
-        self.integrals: dict[str, list[float]] = {}
-
-    def step(self, t: float, measurements: Mapping[str, float]) -> dict[str, float]:
-        commands = {}
-        for w in WHEELSETS:
-            left, right = (measurements[f"{w.name}.{side}.spin_speed"] for side, _ in SIDES)
-            rate = self._low_pass(w.name, measurements[f"{w.name}.yaw_rate"])
-            error = PLANT.speed_ratio * rate - 0.5 * (left - right)
-            for side, sign in SIDES:
-                commands[f"{w.name}.actuator_{side}.force"] = sign * PER_MOMENT * self._moment(w.name, error, sign)
-        return commands
-
-    def _low_pass(self, name: str, u: float) -> float:
-        """The transposed direct form, begun where its first input leads it."""
-        (b0, b1, b2), (a1, a2) = LOW.b, LOW.a
-        x = self.filters.setdefault(name, [u * (b1 + b2 - a1 - a2), u * (b2 - a2)])
-        y = b0 * u + x[0]
-        x[:] = [b1 * u - a1 * y + x[1], b2 * u - a2 * y]
-        return y
-
-    def _moment(self, name: str, error: float, sign: float) -> float:
-        total = self.integrals.setdefault(name, [0.0, error])
-        if sign > 0.0:
-            total[:] = [total[0] + 0.5 * TS * RATE * (error + total[1]), error]
-        return GAIN * error + total[0]
-
-
-def discrete(gain: float = GAIN) -> DiscreteController:
-    """As matrices: low-pass, difference and PI of every wheelset."""
-    z = python_control.tf([1.0, 0.0], [1.0], TS)
-    low = python_control.tf(list(LOW.b), [1.0, *LOW.a], TS)
-    one = python_control.tf([1.0], [1.0], TS)
-    pi = gain + 0.5 * TS * RATE * (z + 1.0) / (z - 1.0)
-    state = python_control.tf2ss
-    moment = (
-        state(pi)
-        * python_control.append(state(one))
-        * python_control.ss([], [], [], [[PLANT.speed_ratio, -0.5, 0.5]], TS)
-        * python_control.append(state(low), state(one), state(one))
-    )
-    forces = python_control.ss([], [], [], [[PER_MOMENT], [-PER_MOMENT]], TS)
-    return DiscreteController(
-        python_control.append(*(forces * moment for _ in WHEELSETS)), measurements=MEASURED, commands=COMMANDS
-    )
+from three_forms import COMMANDS, MEASURED, TS, Stepped, blocks, discrete, scenario
 
 
 def python(controller: Any = None, **more: Any) -> PythonController:
@@ -116,14 +33,10 @@ def python(controller: Any = None, **more: Any) -> PythonController:
     return PythonController(controller or Stepped(), **values)
 
 
-def scenario(strategy: object, duration: float = 4.0) -> kl.Scenario:
-    track = kl.Track.curve(radius="800 m", cant="100 mm", transition="60 m", straight_before="30 m")
-    return kl.Scenario(VEHICLE, track, speed="40 m/s", control=strategy, duration=duration, energy=False)
-
-
 def apart(one: xr.Dataset, other: xr.Dataset) -> float:
-    """The largest difference of any channel, but for what is rounding of its largest value, over its range."""
-    names = [n for n in one.data_vars if n in other.data_vars]
+    """The largest difference of any channel over its range, but for rounding: of its largest value, and what energies
+    add up to."""
+    names = [n for n in one.data_vars if n in other.data_vars and n != "energy.residual"]
     assert len(names) > 100
     return max(_apart(one[n].to_numpy(), other[n].to_numpy()) for n in names)
 
@@ -134,16 +47,14 @@ def _apart(one: np.ndarray, other: np.ndarray) -> float:
 
 
 def test_one_controller_in_three_forms_gives_one_result() -> None:
-    blocks = kl.simulate(scenario(Blocks()), strict=True)
-    alone = kl.simulate(scenario(None), strict=True)
-    assert float(np.abs(blocks["bogie1.wheelset1.y"]).max()) < float(np.abs(alone["bogie1.wheelset1.y"]).max())
+    composed = kl.simulate(scenario(blocks, 4.0), strict=True)
     for form in (discrete(), python()):
-        assert apart(blocks, kl.simulate(scenario(form), strict=True)) < 1e-9
+        assert apart(composed, kl.simulate(scenario(form, 4.0), strict=True)) < 1e-9
 
 
 def test_blocks_and_matrices_have_one_linear_model() -> None:
     """The closed loop's responses of every output to every input; operating points are found to 1e-10."""
-    models = [kl.linearise(scenario(form), at="150 m") for form in (Blocks(), discrete())]
+    models = [kl.linearise(scenario(form), at="150 m") for form in (blocks, discrete())]
     for frequency in (0.2, 1.0, 5.0, 30.0):
         z = np.exp(2j * math.pi * frequency * TS)
         one, other = (m.C @ np.linalg.solve(z * np.eye(len(m.A)) - m.A, m.B) + m.D for m in models)
@@ -306,3 +217,49 @@ def test_a_spec_does_not_run_without_its_controller() -> None:
 def test_bad_declarations_are_refused_before_the_run(make: Any, word: str) -> None:
     with pytest.raises(InputError, match=word):
         make()
+
+
+def test_a_run_is_cancelled_from_within_its_controller_and_by_ctrl_c() -> None:
+    class Impatient(Failing):
+        def __init__(self, end: Any) -> None:
+            self.end = end
+
+        def step(self, t: float, measurements: Mapping[str, float]) -> Any:
+            if abs(t - 0.02) < 1e-6:
+                self.end()
+            return [0.0] * len(COMMANDS)
+
+        def __deepcopy__(self, _: object) -> Any:
+            return self
+
+    progress = kl.progress()
+    with pytest.raises(RunCancelledError):
+        kl.simulate(scenario(python(Impatient(progress.cancel)), 9.0), progress=progress)
+    with pytest.raises(KeyboardInterrupt):
+        kl.simulate(scenario(python(Impatient(_thread.interrupt_main)), 9.0))
+
+
+def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    mpl.use("Agg")
+    monkeypatch.chdir(tmp_path)
+    own_strategy.main()
+    largest = [float(line.split()[-2]) for line in capsys.readouterr().out.splitlines()]
+    passive, own, library = largest
+    assert library < own < 0.5 * passive
+    assert (tmp_path / "own_strategy.png").stat().st_size > 10_000
+    monkeypatch.setattr(three_forms, "scenario", lambda form: scenario(form, 0.2))
+    three_forms.main(repeats=1)
+    assert len(capsys.readouterr().out.splitlines()) == 4
+
+
+def test_what_the_page_shows_is_in_the_examples() -> None:
+    root = Path(three_forms.__file__).parents[1]
+    page = (root / "docs" / "own_controller.md").read_text()
+    shown = [
+        textwrap.dedent(part).strip("\n") for part in re.findall(r"(?:^    .*\n|^\n(?=    ))+", page, re.MULTILINE)
+    ]
+    sources = "".join((root / "examples" / name).read_text() for name in ("own_strategy.py", "three_forms.py"))
+    code = [part for part in shown if part.startswith(("class", "@", "def", "python ="))]
+    assert len(code) == 4
+    for part in code:
+        assert part in sources
