@@ -21,6 +21,7 @@ from klingel.control.sensor import (
     LoadCell,
     Position,
     Speedometer,
+    StrokeSensor,
 )
 from klingel.control.sensors import Sensors
 from klingel.control.slip import SlipControl
@@ -56,6 +57,7 @@ __all__ = [
     "SlipControl",
     "SolidLike",
     "Speedometer",
+    "StrokeSensor",
     "Timing",
     "Traction",
     "TrailedIRW",
