@@ -73,11 +73,13 @@ def test_a_gyro_is_blind_to_the_database() -> None:
 @pytest.mark.parametrize("mismatch", [2e-4, 5e-4, -5e-4, 1e-3])
 def test_unequal_wheels(control: Any, mismatch: float) -> None:
     """Y = -dr/(2 gamma) within 15 %, Y the shift where wheels touch rails; the axle above them leans by dr/(2 lambda):
-    y = -dr/2 (1/gamma + r0/lambda) within 8 %."""
+    y = -dr/2 (1/gamma + r0/lambda) within 8 %. Without that lean y = -dr/(2 gamma) is 20 % short at 0.2 mm, and
+    within 15 % from half a millimetre on."""
     for y, roll in steady(control=control, radius_mismatch=mismatch).T:
         gamma = conicity(y)
         assert y - R0 * roll == pytest.approx(-mismatch / (2.0 * gamma), rel=0.15)
         assert y == pytest.approx(-0.5 * mismatch * (1.0 / gamma + R0 / HALF), rel=0.08)
+        assert abs(mismatch) < 5e-4 or y == pytest.approx(-mismatch / (2.0 * gamma), rel=0.15)
 
 
 def test_unequal_wheels_on_cones() -> None:

@@ -106,6 +106,23 @@ def test_all_positions_come_from_one_device() -> None:
     np.testing.assert_allclose(errors[0], errors[1], atol=1e-9)
 
 
+def test_a_python_controller_measures_through_them_by_its_own_names() -> None:
+    class Echo:
+        def reset(self) -> None: ...
+
+        def step(self, t: float, measurements: dict[str, float]) -> dict[str, float]:
+            return {"told": measurements[LEFT]}
+
+    own = kl.control.PythonController(
+        Echo(), sample_time="1 ms", measurements=[LEFT], commands=[], probes={"told": "rad/s"}
+    )
+    sensors = Sensors(encoder=Encoder(noise=0.02), record=True)
+    scenario = kl.Scenario(IRW, STRAIGHT, speed=30.0, control=own, sensors=sensors, duration=0.1, energy=False)
+    run = kl.simulate(scenario, strict=True)
+    np.testing.assert_array_equal(run["told"], run[f"{LEFT}.measured"])
+    assert np.std(run["told"] - run[LEFT]) > 0.01
+
+
 def test_a_counting_encoder_rounds_to_a_pulse_a_window() -> None:
     encoder = Encoder.counting(pulses=1000, window="20 ms")
     assert (encoder.hold, encoder.delay) == (0.02, 0.01)
@@ -113,10 +130,20 @@ def test_a_counting_encoder_rounds_to_a_pulse_a_window() -> None:
 
 
 def test_every_measurement_of_the_library_has_a_kind() -> None:
-    known = {word for kind in KINDS.values() for word in kind.quantities}
-    for strategy in (kl.control.SolidLike(), kl.control.IRWLike(), kl.control.IRWLike(curvature="database")):
-        for channel in strategy.lower(IRW, STRAIGHT, 30.0)["measurements"]:
-            assert channel.rpartition(".")[2] in known, channel
+    """But the place of a wheelset between the rails, which no sensor in service tells."""
+    known = {"y"} | {word for kind in KINDS.values() for word in kind.quantities}
+    strategies = {
+        "mechatronic_irw": (kl.control.SolidLike(), kl.control.IRWLike(curvature="database")),
+        "trailed_irw": (kl.control.TrailedIRW(), kl.control.LateralFeedback()),
+        "mechatronic_solid": (kl.control.YawMoment(), kl.control.YawRelaxation()),
+        "actuated_coach": (kl.control.YawMoment(), kl.control.YawRelaxation(), kl.control.SecondaryYaw()),
+    }
+    for name, those in strategies.items():
+        for strategy in those:
+            vehicle = kl.library.vehicle(name)
+            if not list(strategy.problems(vehicle)):
+                for channel in strategy.lower(vehicle, STRAIGHT, 30.0)["measurements"]:
+                    assert channel.rpartition(".")[2] in known, channel
 
 
 def test_what_no_kind_covers_is_ideal_and_noted() -> None:

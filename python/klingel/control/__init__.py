@@ -22,6 +22,7 @@ from klingel.control.sensor import (
     LoadCell,
     Position,
     Speedometer,
+    StrokeSensor,
 )
 from klingel.control.sensors import Sensors
 from klingel.control.slip import SlipControl
@@ -59,6 +60,7 @@ __all__ = [
     "SlipControl",
     "SolidLike",
     "Speedometer",
+    "StrokeSensor",
     "Timing",
     "TorqueVectoring",
     "Traction",
