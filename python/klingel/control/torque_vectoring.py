@@ -67,7 +67,9 @@ class TorqueVectoring(SolidLike):
         """u = K(s) (lambda V rho/r0 + Td/c + Td V/(f11 r0^2) - wd), with the back-EMF of the speed difference."""
         ts = self.timing.sample_time
         forward = database_feedforward(d, plant, self.contact, w, track, self.timing)
-        wanted = d.sum(f"{w.name}.Td.wanted", {forward.moment: plant.radius / (2.0 * plant.geometry.half_tape_distance)})
+        wanted = d.sum(
+            f"{w.name}.Td.wanted", {forward.moment: plant.radius / (2.0 * plant.geometry.half_tape_distance)}
+        )
         torque = d.saturation(f"{w.name}.Td.forward", wanted, -self.torque_max, self.torque_max)
         d.probe(f"{w.name}.torque_forward", "N m", torque)
         rolling = self.contact.longitudinal_creep * plant.radius**2
