@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from klingel.control.basics import SPEED, SPEED_GRID, Timing, Wheelset, scheduled
-from klingel.control.diagram import Diagram
+from klingel.control.diagram import Diagram, Gain
 from klingel.control.discrete import Section, low_pass, slope_low_pass
 from klingel.control.feedforward import ContactDesign, SteeringGeometry, attack_angle_table
 from klingel.errors import InputError
@@ -71,6 +71,25 @@ def speed_difference(d: Diagram, wheelset: Wheelset, timing: Timing) -> str:
     left, right = (d.measure(f"{wheelset.name}.{side}.spin_speed") for side in ("left", "right"))
     now = d.sum(f"{wheelset.name}.wd.now", {left: 0.5, right: -0.5})
     return d.delay(f"{wheelset.name}.wd", now, timing.sensor_samples)
+
+
+def pair_feedback(
+    d: Diagram, w: Wheelset, name: str, quantity: str, *, common: Gain, opposed: Gain, centring: Gain | None = None
+) -> str:
+    """Feedback of both wheelsets of a bogie on their displacements: common q + (+-1) (opposed p + centring q).
+
+    q = (q1 + q2)/2 and p = (q1 - q2)/2 of `<wheelset>.<quantity>`, which tells the displacement: q how far the bogie is
+    aside, p how far it is turned; + for the leading wheelset. Its shares `<bogie>.<name>.<share>` are made once.
+    """
+    shares = {share: f"{w.bogie_name}.{name}.{share}" for share in ("mean", "half", "common", "opposed")}
+    if not d.has(shares["mean"]):
+        first, second = (f"{w.bogie_name}.wheelset{i}.{quantity}" for i in (1, 2))
+        d.sum(shares["mean"], {first: 0.5, second: 0.5})
+        d.sum(shares["half"], {first: 0.5, second: -0.5})
+        d.sum(shares["common"], {shares["mean"]: common})
+        turning: dict[str, Gain] = {shares["half"]: opposed}
+        d.sum(shares["opposed"], turning if centring is None else turning | {shares["mean"]: centring})
+    return d.sum(f"{w.name}.{name}", {shares["common"]: 1.0, shares["opposed"]: w.lead})
 
 
 def profile_of(track: Track, key: str) -> tuple[list[float], list[float]]:
