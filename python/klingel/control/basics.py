@@ -3,8 +3,10 @@ Wheelsets are named as in the results: bogie1.wheelset1 leads, bogie2.wheelset2 
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -51,6 +53,15 @@ WHEELSETS = tuple(Wheelset(bogie, number) for bogie in (1, 2) for number in (1, 
 def scheduled(d: Diagram, name: str, gain: Callable[[float], float]) -> str:
     """The signal of a gain scheduled over the measured speed; made once."""
     return name if d.has(name) else d.lookup(name, d.measure(SPEED), SPEED_GRID, [gain(v) for v in SPEED_GRID])
+
+
+def check_unused(owner: Any, names: Sequence[str]) -> None:
+    """Errors: InputError naming an inherited parameter that was given although this strategy has no use for it."""
+    for parameter in dataclasses.fields(owner):
+        default = parameter.default
+        if parameter.name in names and (value := getattr(owner, parameter.name)) != default:
+            message = f"does nothing in {type(owner).__name__}"
+            raise InputError.single(f"control.{parameter.name}", value, message, remedy="leave it out")
 
 
 def check_positive(owner: object, names: Sequence[str], *, key: str = "control") -> None:

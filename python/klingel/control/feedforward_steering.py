@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from klingel.control.basics import WHEELSETS
+from klingel.control.basics import WHEELSETS, check_unused
 from klingel.control.common import Plant
 from klingel.control.diagram import Diagram
 from klingel.control.driven import motors_of
@@ -26,7 +26,10 @@ class Feedforward(SolidLike):
     """M = kpsi [+-a rho + alpha_Y - psi_b - h p/V] - H p, all of it from curvature and cant of the database.
 
     Independently rotating wheels have no guidance of their own: their motors couple them as in `SolidLike`, with its
-    parameters.
+    parameters, but those of the yaw-moment loop and of the inertial sensors.
+
+    common_share: all of the damping where both wheelsets of a bogie err alike, as nothing else centres the bogie;
+        `coupling` and `coupling_speed` are so much lower.
 
     >>> from klingel import library
     >>> from klingel.track import Track
@@ -34,6 +37,14 @@ class Feedforward(SolidLike):
     >>> {channel.rsplit(".", 1)[1] for channel in spec["measurements"]} == {"s", "speed"}
     True
     """
+
+    coupling: float = 0.25
+    coupling_speed: float = 36.0
+    common_share: float = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_unused(self, ("yaw_frequency", "yaw_speed", "yaw_share", "sensor_frequency"))
 
     def problems(self, vehicle: Vehicle) -> Iterator[Problem]:
         """Why it does not fit a vehicle."""

@@ -24,9 +24,8 @@ if TYPE_CHECKING:
 class PassiveIRW:
     """Actuators without force, equal torques for both wheels of a pair.
 
-    Motors at a held voltage would be a damper between the wheels and so guide
-    them a little. So the difference of the torques is held at nil, as in `IRWLike`; a vehicle without motors
-    has nothing to control.
+    Motors at a held voltage would be a damper between the wheels and so guide them a little. So the difference of the
+    torques is held at nil, as in `IRWLike`; a vehicle without motors has nothing to control.
 
     current_frequency: crossover of the differential current loop of DC motors [Hz], as `IRWLike` has it.
     timing: sampling and delays. traction: loop that drives and brakes through the same motors.
@@ -38,7 +37,7 @@ class PassiveIRW:
     8
     """
 
-    current_frequency: float = 30.0
+    current_frequency: float = 12.0
     timing: Timing = field(default_factory=Timing)
     traction: Traction | None = None
 

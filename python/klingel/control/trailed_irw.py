@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from klingel.control.basics import check_unused
 from klingel.control.common import Plant
 from klingel.control.fit import misfits
 from klingel.control.irw_like import IRWLike
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class TrailedIRW(IRWLike):
-    """The steering of `IRWLike` on a vehicle without motors; the same parameters, but for those of its motors.
+    """The steering of `IRWLike` on a vehicle without motors; its parameters, but `current_frequency` and `traction`.
 
     >>> from klingel import library
     >>> from klingel.track import Track
@@ -27,6 +28,10 @@ class TrailedIRW(IRWLike):
     >>> len(spec["commands"])
     8
     """
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_unused(self, ("current_frequency", "traction"))
 
     def problems(self, vehicle: Vehicle) -> Iterator[Problem]:
         """Why it does not fit a vehicle."""

@@ -35,7 +35,7 @@ class YawRelaxation:
     ['bogie1.wheelset1.actuator_left.stroke', 'bogie1.wheelset1.actuator_right.stroke']
     """
 
-    relaxation: float = 0.9
+    relaxation: float = 0.95
     frequency: float = 0.5
     timing: Timing = field(default_factory=Timing)
 
