@@ -11,7 +11,7 @@ from klingel.contact import profile_of
 from klingel.drives import induction_point, operating_point, running_resistance, starting_point
 from klingel.scenario import Scenario
 from klingel.track import CANT_BASE, Adhesion, Track
-from klingel.vehicle import Drive, InductionDrive, Transmission, Vehicle
+from klingel.vehicle import Actuator, Drive, InductionDrive, Transmission, Vehicle
 
 GRAVITY = 9.81
 """[m/s2], as the study's cant deficiencies assume."""
@@ -98,7 +98,7 @@ def lower(scenario: Scenario) -> Spec:
         "bushings": [*_primary(vehicle, wheels), *_secondary(vehicle)],
         "maxwells": [*_primary_dampers(vehicle, wheels), *_secondary_dampers(vehicle)],
         "stops": [_lateral_stop(vehicle, bogie, x) for bogie, x in _bogies(vehicle)],
-        "actuators": list(_actuators(vehicle, wheels)),
+        "actuators": [*_actuators(vehicle, wheels), *_secondary_actuators(vehicle)],
         "drives": list(_drives(scenario, wheels, control)),
         "induction_drives": list(_induction_drives(vehicle, wheels, scenario.speed)),
         "drag": _drag(vehicle, scenario.headwind),
@@ -305,16 +305,31 @@ def _actuators(vehicle: Vehicle, wheels: tuple[Axle, ...]) -> Iterator[Spec]:
     for axle in wheels:
         for side, sign in SIDES:
             y = sign * steering.half_spacing
-            yield {
-                "name": f"{axle.name}.actuator_{side}",
-                "joint": _joint(axle.bogie, axle.name, axle.x, y, vehicle.geometry.wheel_radius),
-                "natural_frequency": 2.0 * math.pi * steering.bandwidth,
-                "damping_ratio": steering.damping_ratio,
-                "force_max": steering.force_max,
-                "rate_max": steering.force_rate_max,
-                "stroke": steering.stroke,
-                "stop_stiffness": steering.stop_stiffness,
-            }
+            joint = _joint(axle.bogie, axle.name, axle.x, y, vehicle.geometry.wheel_radius)
+            yield _actuator(f"{axle.name}.actuator_{side}", joint, steering)
+
+
+def _secondary_actuators(vehicle: Vehicle) -> Iterator[Spec]:
+    steering = vehicle.secondary_steering
+    if steering is None:
+        return
+    for bogie, x in _bogies(vehicle):
+        for side, sign in SIDES:
+            joint = _joint(bogie, "body", x, sign * steering.half_spacing, steering.height)
+            yield _actuator(f"{bogie}.yaw_actuator_{side}", joint, steering)
+
+
+def _actuator(name: str, joint: Spec, actuator: Actuator) -> Spec:
+    return {
+        "name": name,
+        "joint": joint,
+        "natural_frequency": 2.0 * math.pi * actuator.bandwidth,
+        "damping_ratio": actuator.damping_ratio,
+        "force_max": actuator.force_max,
+        "rate_max": actuator.force_rate_max,
+        "stroke": actuator.stroke,
+        "stop_stiffness": actuator.stop_stiffness,
+    }
 
 
 def _drives(scenario: Scenario, wheels: tuple[Axle, ...], control: Spec | None) -> Iterator[Spec]:

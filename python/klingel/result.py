@@ -23,6 +23,7 @@ from klingel.scenario import Scenario
 
 if TYPE_CHECKING:
     from klingel._core import Progress
+    from klingel.control.own import Called
 
 DISK_RATE = 200.0
 """Default sample rate of files [Hz]."""
@@ -57,7 +58,8 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, strict: bo
     did not complete; RunCancelledError.
     """
     spec = lower(scenario)
-    result = simulate_spec(spec, progress=progress, strict=strict)
+    externals: dict[str, Called] = getattr(scenario.control, "externals", dict)()
+    result = simulate_spec(spec, progress=progress, strict=strict, externals=externals)
     notes = [result.attrs["notes"], *scenario.sensors.notes(spec["control"])]
     result.attrs["notes"] = "; ".join(note for note in notes if note)
     return result
@@ -75,13 +77,23 @@ def prepare(scenario: Scenario) -> list[Prepared]:
         raise SimulationError(str(error)) from None
 
 
-def simulate_spec(spec: Spec, *, progress: Progress | None = None, strict: bool = False) -> xr.Dataset:
-    """Run a spec, such as that of an earlier result, `json.loads(result.attrs["spec"])`; otherwise as `simulate`."""
+def simulate_spec(
+    spec: Spec,
+    *,
+    progress: Progress | None = None,
+    strict: bool = False,
+    externals: Mapping[str, Called] | None = None,
+) -> xr.Dataset:
+    """Run a spec, such as that of an earlier result, `json.loads(result.attrs["spec"])`; otherwise as `simulate`.
+
+    externals: its controllers outside the core by the names of their blocks, `PythonController(...).externals()`; one
+    that fails ends the run as an outcome. Errors: those of `simulate`; SimulationError for one that is missing.
+    """
     extension = core()
     text = json.dumps(spec, allow_nan=False)
     watched = progress if progress is not None else extension.Progress()
     try:
-        raw = _interruptible(lambda: extension.simulate(text, watched), watched)
+        raw = _interruptible(lambda: extension.simulate(text, watched, externals), watched)
     except extension.Cancelled as error:
         raise RunCancelledError(str(error)) from None
     except extension.CoreError as error:

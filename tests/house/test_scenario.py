@@ -261,3 +261,25 @@ def test_radius_mismatch_is_one_or_four(tmp_path: Path, given: Any, text: str) -
 def test_a_bad_radius_mismatch_is_named(given: Any) -> None:
     with pytest.raises(InputError, match=r"radius_mismatch.*give"):
         scenario(radius_mismatch=given)
+
+
+DATABASE = """
+vehicle = "mechatronic_irw"
+speed = "108 km/h"
+track.curve = { radius = "800 m", cant = "100 mm" }
+control = { strategy = "irw_like", curvature = "database" }
+"""
+
+
+def test_a_database_is_the_track_with_mistakes_or_another_one(tmp_path: Path) -> None:
+    track = Track.curve(radius="800 m", cant="100 mm")
+    given = read(tmp_path, DATABASE + 'database = { curvature_scale = 1.1, only = 1, shift = "-30 m" }')
+    assert given.database == track.mistaken(curvature_scale=1.1, only=1, shift="-30 m")
+    assert given.track == track
+    assert read(tmp_path, DATABASE + "database.straight = 700").database == Track.straight(700)
+    assert lower(given)["control"] != lower(given.replace(database=None))["control"]
+    assert lower(given)["track"] == lower(given.replace(database=None))["track"]
+    with pytest.raises(InputError, match=r"database.shift"):
+        read(tmp_path, DATABASE + 'database = { shift = "10 km" }')
+    with pytest.raises(InputError, match=r"database.only"):
+        read(tmp_path, DATABASE + "database = { only = 2 }")

@@ -114,3 +114,53 @@ def test_adhesion_is_linear_in_the_transitions_and_held_elsewhere() -> None:
 def test_bad_adhesion_is_refused(patches: list[tuple[float, ...]], said: str) -> None:
     with pytest.raises(InputError, match=said):
         Adhesion(patches=patches)
+
+
+def test_mistakes_in_a_database() -> None:
+    track = curve()
+    s = np.linspace(0.0, track.length, 701)
+    more = track.mistaken(curvature_scale=1.1)
+    np.testing.assert_allclose(more.curvature(s), 1.1 * track.curvature(s))
+    np.testing.assert_array_equal(more.cant(s), track.cant(s))
+    missing = track.mistaken(curvature_scale=0, cant_scale=0, only=1)
+    assert not missing.curvature(s).any()
+    assert not missing.cant(s).any()
+    assert track.mistaken(curvature_scale=-1, cant_scale=-1) == track.mirrored()
+    assert track.mistaken() == track
+
+
+@given(st.floats(min_value=-600.0, max_value=600.0))
+def test_a_shifted_track_has_everything_so_much_farther_along(by: float) -> None:
+    track = curve(straight_before="40 m", straight_after="200 m")
+    moved = track.mistaken(shift=by)
+    assert moved.length == pytest.approx(track.length)
+    s = np.linspace(0.0, min(track.length, moved.length), 200)
+    for name in ("curvature", "cant", "grade"):
+        expected = getattr(track, name)(np.clip(s - by, 0.0, track.length))
+        np.testing.assert_allclose(getattr(moved, name)(s), expected, atol=1e-9)
+
+
+def test_one_of_several_curves_is_wrong() -> None:
+    first, second = curve(), curve(radius="400 m", hand="left")
+    track = Track(first.segments + second.segments)
+    wrong = track.mistaken(curvature_scale=0.5, only=2)
+    s = np.linspace(0.0, track.length, 500)
+    factor = np.where(s < first.length, 1.0, 0.5)
+    np.testing.assert_allclose(wrong.curvature(s), factor * track.curvature(s))
+    with pytest.raises(InputError, match="give 1 to 2"):
+        track.mistaken(curvature_scale=0.5, only=3)
+    with pytest.raises(InputError, match="straight"):
+        Track.straight(100).mistaken(only=1)
+    with pytest.raises(InputError, match="beyond"):
+        track.mistaken(shift="10 km")
+
+
+def test_curves_that_meet_where_there_is_no_curvature_are_two() -> None:
+    segments = [
+        Segment(100.0, (0.0, 1e-3)),
+        Segment(100.0, (1e-3, 0.0)),
+        Segment(100.0, (0.0, -1e-3)),
+        Segment(100.0, (-1e-3, 0.0)),
+    ]
+    wrong = Track(tuple(segments)).mistaken(curvature_scale=0, only=2)
+    np.testing.assert_allclose(wrong.curvature([100.0, 300.0]), [1e-3, 0.0])

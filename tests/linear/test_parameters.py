@@ -78,3 +78,15 @@ def test_all_wheelsets_may_change_together(scenario: kl.Scenario) -> None:
     assert one.radius_mismatch == (5e-4, 0.0, 0.0, 0.0)
     assert "radius_mismatch" not in parameters.names(one)
     assert parameters.replace(one, "radius_mismatch", "0.2 mm").radius_mismatch == (2e-4,) * 4
+
+
+def test_sensors_that_are_not_ideal_have_parameters(scenario: kl.Scenario) -> None:
+    typical = scenario.replace(sensors=kl.control.Sensors.typical())
+    paths = [path for path in parameters.names(typical) if path.startswith("sensors.")]
+    for path in paths:
+        assert parameters.replace(typical, path, parameters.get(typical, path)) == typical, path
+    noisy = parameters.replace(typical, "sensors.gyro.noise", "1 deg/s")
+    assert noisy.sensors.gyro is not None
+    assert noisy.sensors.gyro.noise == pytest.approx(0.0174533)
+    assert parameters.unit(typical, "sensors.load_cell.bias") == "N m"
+    assert not [path for path in parameters.names(scenario) if path.startswith("sensors.")]

@@ -3,7 +3,7 @@
 
 use crate::channels;
 use crate::compile::compile;
-use crate::control::Controller;
+use crate::control::{ControlError, Controller, Externals};
 use crate::energy::Energy;
 use crate::equilibrium::{design_state, equilibrium, start};
 use crate::error::{EngineError, Fault};
@@ -61,13 +61,18 @@ pub struct TimeSeries {
 /// Samples between two looks at the cancel flag.
 const POLL: usize = 200;
 
-/// Compiles and runs a spec.
+/// Compiles and runs a spec; `externals` are its controllers outside the core by the names of their blocks.
 ///
 /// # Errors
-/// Those of `compile`, no equilibrium, or a cancelled run. A derailment is not an error but `TimeSeries::fault`.
-pub fn simulate(spec: &Spec, progress: &Progress) -> Result<TimeSeries, EngineError> {
+/// Those of `compile`, no equilibrium, or a cancelled run. A derailment is not an error but `TimeSeries::fault`, nor is a
+/// controller that fails.
+pub fn simulate(spec: &Spec, externals: Externals, progress: &Progress) -> Result<TimeSeries, EngineError> {
     let model = compile(spec)?;
-    let controller = spec.control.as_ref().map(Controller::compile).transpose()?;
+    let controller = match (&spec.control, externals.keys().min()) {
+        (Some(control), _) => Some(Controller::with(control, externals)?),
+        (None, Some(name)) => Err(ControlError::ExternalUnknown { name: name.clone() })?,
+        (None, None) => None,
+    };
     run(&model, controller, progress)
 }
 

@@ -63,8 +63,9 @@ struct Problem<'a> {
 /// the way there may stand in it, then with them if any is met.
 ///
 /// # Errors
-/// `EngineError::Equilibrium` when Newton's method does not converge.
+/// `EngineError::Equilibrium` when Newton's method does not converge; a controller outside the core.
 pub fn steady(m: &Model, wiring: Option<&Wiring>, start: Option<&Steady>) -> Result<Steady, EngineError> {
+    wiring.map_or(Ok(()), |w| w.diagram.is_linear())?;
     let mut problem = Problem::new(m, wiring);
     if wiring.is_none() {
         return problem.solve(start);

@@ -2,7 +2,7 @@
 //! Shared by runs, steady states and linear models.
 
 use crate::channels::Channel;
-use crate::control::{ControlSpec, Controller, Diagram};
+use crate::control::{ControlSpec, Diagram};
 use crate::error::EngineError;
 use crate::model::Model;
 use crate::{channels, inputs};
@@ -23,7 +23,7 @@ impl Wiring {
     /// # Errors
     /// A diagram that is refused; a channel or input that the model does not have.
     pub fn new(m: &Model, spec: &ControlSpec) -> Result<Self, EngineError> {
-        Self::of(m, Controller::compile(spec)?.diagram().clone())
+        Self::of(m, Diagram::compile(spec)?)
     }
 
     /// The wires of a compiled diagram.

@@ -3,6 +3,7 @@
 
 mod creep;
 mod creep_table;
+mod external;
 mod linear;
 mod pair;
 
@@ -13,6 +14,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 create_exception!(_core, CoreError, PyValueError, "The core refuses a spec or finds no start for it.");
@@ -54,13 +56,20 @@ fn parse(spec: &str) -> Result<Spec, EngineError> {
 }
 
 /// Runs a spec (JSON) and returns a dict: channels (names), units, time (n), data (n x channels), fault (None or
-/// (time, message)), static_wheel_loads, cpu_time and evaluations.
+/// (time, message)), static_wheel_loads, cpu_time and evaluations. `externals`: controllers outside the core by the names
+/// of their blocks, with reset() and step(time, inputs) -> outputs.
 #[pyfunction]
-#[pyo3(signature = (spec, progress=None))]
-fn simulate<'py>(py: Python<'py>, spec: &str, progress: Option<&Progress>) -> PyResult<Bound<'py, PyDict>> {
+#[pyo3(signature = (spec, progress=None, externals=None))]
+fn simulate<'py>(
+    py: Python<'py>,
+    spec: &str,
+    progress: Option<&Progress>,
+    externals: Option<HashMap<String, Py<PyAny>>>,
+) -> PyResult<Bound<'py, PyDict>> {
     let progress = progress.map_or_else(Arc::default, |p| Arc::clone(&p.0));
-    let series =
-        py.detach(|| parse(spec).and_then(|s| klingel_engine::simulate(&s, &progress))).map_err(|e| raised(&e))?;
+    let externals = external::boxed(externals.unwrap_or_default());
+    let run = || parse(spec).and_then(|s| klingel_engine::simulate(&s, externals, &progress));
+    let series = py.detach(run).map_err(|e| raised(&e))?;
     let (names, units): (Vec<String>, Vec<String>) = series.channels.into_iter().unzip();
     let (rows, columns) = (series.time.len(), names.len());
     let data: Bound<'py, PyArray2<f64>> = PyArray1::from_vec(py, series.rows).reshape([rows, columns])?;

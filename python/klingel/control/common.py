@@ -32,12 +32,10 @@ class Plant:
 
     @classmethod
     def of(cls, vehicle: Vehicle) -> Plant:
-        """Errors: InputError for a vehicle without drives or steering actuators."""
-        for key in ("drive", "steering"):
-            if getattr(vehicle, key) is None:
-                remedy = f"{vehicle.name} is passive; take a vehicle with [drive] and [steering], or no control"
-                raise InputError.single(key, None, "is missing", remedy=remedy)
-        assert vehicle.steering is not None
+        """Errors: InputError for a vehicle without steering actuators."""
+        if vehicle.steering is None:
+            remedy = f"{vehicle.name} is passive; take a vehicle with [steering], or no control"
+            raise InputError.single("steering", None, "is missing", remedy=remedy)
         radius = vehicle.geometry.wheel_radius
         return cls(SteeringGeometry.of(vehicle), vehicle.steering, radius)
 
@@ -49,12 +47,12 @@ class Plant:
     @property
     def moment_max(self) -> float:
         """Of both actuators of a wheelset together [N m]."""
-        return 2.0 * self.steering.half_spacing * self.steering.force_max
+        return self.steering.moment_max
 
     @property
     def actuator_lag(self) -> float:
         """Delay of the actuators for slow commands, 2 zeta/w [s]."""
-        return 2.0 * self.steering.damping_ratio / (2.0 * math.pi * self.steering.bandwidth)
+        return self.steering.lag
 
 
 def speed_difference(d: Diagram, wheelset: Wheelset, timing: Timing) -> str:

@@ -152,6 +152,15 @@ class Diagram:
         """
         return self._add("hold", name, input=signal, samples=samples)
 
+    def external(self, name: str, inputs: Sequence[str], outputs: Sequence[str], samples: int = 1) -> tuple[str, ...]:
+        """A controller outside the core, called every so many samples, its outputs held in between.
+
+        It goes with the spec into the run, `simulate_spec(spec, externals={name: controller})`; `PythonController`
+        does all of it.
+        """
+        self._add("external", name, inputs=list(inputs), outputs=list(outputs), samples=samples)
+        return tuple(outputs)
+
     def lookup(self, name: str, signal: str, x: Sequence[float], y: Sequence[float], *, edge: str = "hold") -> str:
         """Linear interpolation of y(x); outside, the end value (`hold`) or an outcome of the run (`error`)."""
         points = {"x": [float(v) for v in x], "y": [float(v) for v in y]}

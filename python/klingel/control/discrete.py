@@ -4,9 +4,12 @@ Each is prewarped at its own frequency, so that notches and corners sit where th
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
+from klingel.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -50,10 +53,49 @@ def _substitute(c: tuple[float, float, float], k: float) -> tuple[float, float, 
     return (c0 + c1 + c2, 2.0 * (c0 - c2), c0 - c1 + c2)
 
 
+def transfer_function(
+    numerator: Sequence[float],
+    denominator: Sequence[float],
+    *,
+    sample_time: float,
+    prewarp: float | None = None,
+) -> list[Section]:
+    """The sections of a continuous transfer function of any order, coefficients highest power first as in scipy.
+
+    prewarp: frequency [rad/s] at which both responses agree exactly. Errors: InputError for one with more zeros than
+    poles, or with a pole at s = 0.
+
+    >>> sections = transfer_function([1.0], [1e-3, 0.02, 0.2, 1.0], sample_time=1e-3)
+    >>> len(sections), round(math.prod(sum(s.b) / (1.0 + sum(s.a)) for s in sections), 9)
+    (2, 1.0)
+    """
+    from scipy.signal import tf2zpk, zpk2sos
+
+    n, d = (np.trim_zeros(np.asarray(c, dtype=float), "f") for c in (numerator, denominator))
+    if len(n) == 0:
+        raise InputError.single("numerator", list(numerator), "is nil", remedy="leave the filter out")
+    if len(n) > len(d):
+        remedy = "give at least as many poles as zeros, coefficients highest power first"
+        raise InputError.single("denominator", list(denominator), "is of a lower order", remedy=remedy)
+    if d[-1] == 0.0:
+        remedy = "take the integral out of it and use a `pi` block"
+        raise InputError.single("denominator", list(denominator), "has a pole at s = 0", remedy=remedy)
+    zeros, poles, gain = tf2zpk(n, d)
+    rows = zpk2sos(zeros, poles, gain, pairing="minimal", analog=True).tolist()
+    sections = (((b0, b1, b2), (a0, a1, a2)) for b2, b1, b0, a2, a1, a0 in rows)
+    return [bilinear(b, a, sample_time=sample_time, prewarp=prewarp) for b, a in sections]
+
+
 def low_pass(frequency: float, *, sample_time: float, damping: float = 0.7) -> Section:
     """Second-order low-pass with its corner at `frequency` [Hz]."""
     w = 2.0 * math.pi * frequency
     return bilinear((w * w, 0.0, 0.0), (w * w, 2.0 * damping * w, 1.0), sample_time=sample_time, prewarp=w)
+
+
+def high_pass(frequency: float, *, sample_time: float, damping: float = 0.7) -> Section:
+    """Second-order high-pass with its corner at `frequency` [Hz]."""
+    w = 2.0 * math.pi * frequency
+    return bilinear((0.0, 0.0, 1.0), (w * w, 2.0 * damping * w, 1.0), sample_time=sample_time, prewarp=w)
 
 
 def slope_low_pass(frequency: float, *, sample_time: float, damping: float = 0.7) -> Section:

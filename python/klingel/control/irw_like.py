@@ -4,6 +4,7 @@ Differential torque control and rotational speed control of Perez et al. (2004),
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
@@ -25,9 +26,10 @@ from klingel.control.diagram import Diagram
 from klingel.control.discrete import low_pass
 from klingel.control.driven import motors_of
 from klingel.control.feedforward import ContactDesign
+from klingel.control.fit import misfits
 from klingel.control.motors import Motors, command_motors
 from klingel.control.traction import Traction
-from klingel.errors import InputError, nearest
+from klingel.errors import InputError, Problem, nearest
 
 if TYPE_CHECKING:
     from klingel.track import Track
@@ -103,19 +105,27 @@ class IRWLike:
         sensors = ("yaw_frequency", "gyro_frequency", "extrapolation", "roll_frequency", "sensor_frequency")
         check_positive(self, (*loops, *sensors))
 
+    def problems(self, vehicle: Vehicle) -> Iterator[Problem]:
+        """Why it does not fit a vehicle."""
+        return misfits(self, vehicle, needs=("axle_bridge", "drive", "steering"), take="mechatronic_irw")
+
     def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any]:
         """The block diagram for a vehicle at a speed [m/s]; the track is used by the database variant only.
 
         Errors: InputError for a vehicle without drives or steering actuators.
         """
         plant = Plant.of(vehicle)
-        motors = motors_of(vehicle, self.traction, self.timing, speed)
+        return self.diagram(plant, motors_of(vehicle, self.traction, self.timing, speed), track)
+
+    def diagram(self, plant: Plant, motors: Motors | None, track: Track) -> dict[str, Any]:
+        """The block diagram with motors that give equal torques, or without any."""
         d = Diagram(sample_time=self.timing.sample_time)
         proportional = scheduled(d, "steering.gain", lambda v: self._steering_gain(plant, v))
         integral = scheduled(d, "steering.integral_gain", lambda v: self._integral_gain(plant, v))
         sense_inertia(d, plant, self.timing, frequency=self.sensor_frequency)
         for wheelset in WHEELSETS:
-            self._torque_loop(d, motors, wheelset)
+            if motors is not None:
+                self._torque_loop(d, motors, wheelset)
             self._speed_error(d, plant, wheelset, track)
         if self.curvature == "gyro":
             frequency, slow = self.gyro_frequency, self.slow_speed

@@ -13,9 +13,6 @@ from klingel.control.diagram import Diagram
 from klingel.errors import InputError, Problem
 from klingel.units import Quantity, to_si
 
-MEASURED = "measured"
-"""Last word of the signals, and of the recorded channels, that sensors give."""
-
 
 @dataclass(frozen=True, init=False)
 class Sensor:
@@ -109,13 +106,13 @@ class Sensor:
         if self.noise > 0.0 or (gain, bias) != (1.0, 0.0):
             terms: dict[str, float | str] = {channel: gain}
             if self.noise > 0.0:
-                terms[d.noise(f"{channel}.noise", self.noise, whole_of(seed, source))] = 1.0
-            signal = d.sum(f"{channel}.erring", terms, bias=bias)
+                terms[d.noise(f"sensor.noise.{channel}", self.noise, whole_of(seed, source))] = 1.0
+            signal = d.sum(f"sensor.erring.{channel}", terms, bias=bias)
         if held > 1:
-            signal = d.hold(f"{channel}.held", signal, held)
+            signal = d.hold(f"sensor.held.{channel}", signal, held)
         if self.resolution > 0.0:
-            signal = d.quantise(f"{channel}.rounded", signal, self.resolution)
-        return d.delay(f"{channel}.{MEASURED}", signal, late)
+            signal = d.quantise(f"sensor.rounded.{channel}", signal, self.resolution)
+        return d.delay(f"sensor.late.{channel}", signal, late)
 
 
 class Encoder(Sensor):
@@ -170,6 +167,13 @@ class CurrentSensor(Sensor):
     quantities = ("armature_current", "field_current", "current_d", "current_q")
 
 
+class StrokeSensor(Sensor):
+    """Strokes of the steering actuators [m]."""
+
+    unit = "m"
+    quantities = ("stroke",)
+
+
 class Position(Sensor):
     """Position along the track [m]: one device, whose error all positions of the vehicle share.
 
@@ -195,6 +199,7 @@ KINDS: dict[str, type[Sensor]] = {
     "accelerometer": Accelerometer,
     "load_cell": LoadCell,
     "current": CurrentSensor,
+    "stroke": StrokeSensor,
     "position": Position,
     "speed": Speedometer,
 }

@@ -11,7 +11,6 @@ from typing import Any, Self
 from klingel.control.diagram import Diagram
 from klingel.control.sensor import (
     KINDS,
-    MEASURED,
     Accelerometer,
     CurrentSensor,
     Encoder,
@@ -20,6 +19,7 @@ from klingel.control.sensor import (
     Position,
     Sensor,
     Speedometer,
+    StrokeSensor,
 )
 from klingel.errors import InputError, Problem
 
@@ -43,6 +43,7 @@ class Sensors:
     accelerometer: Accelerometer | None = None
     load_cell: LoadCell | None = None
     current: CurrentSensor | None = None
+    stroke: StrokeSensor | None = None
     position: Position | None = None
     speed: Speedometer | None = None
     seed: int = 0
@@ -73,6 +74,7 @@ class Sensors:
             accelerometer=Accelerometer(bias_spread=0.03, scale_spread=3e-3, noise=0.02, resolution=1e-3),
             load_cell=LoadCell(bias_spread=50.0, scale_spread=0.01, noise=20.0, resolution=5.0),
             current=CurrentSensor(bias_spread=0.5, scale_spread=5e-3, noise=0.3, resolution=0.1),
+            stroke=StrokeSensor(bias_spread=1e-4, scale_spread=2e-3, noise=2e-5, resolution=1e-5),
             position=Position(bias_spread=3.0, scale_spread=2e-3, resolution=0.1, hold=0.02),
             speed=Speedometer(scale_spread=5e-3, noise=0.02, resolution=0.01, hold=0.02),
             seed=seed,
@@ -107,7 +109,7 @@ class Sensors:
             for channel, signal in told.items():
                 sensor = self.of(channel)
                 assert sensor is not None
-                d.probe(f"{channel}.{MEASURED}", sensor.unit.replace("^", ""), signal)
+                d.probe(f"{channel}.measured", sensor.unit.replace("^", ""), signal)
         chains = d.spec()
         return control | {
             "blocks": chains["blocks"] + [_reading(block, told) for block in control["blocks"]],

@@ -4,6 +4,7 @@ Differential speed control and yaw-moment control of Perez et al. (2004), with a
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -22,8 +23,10 @@ from klingel.control.diagram import Diagram
 from klingel.control.discrete import lead, notch
 from klingel.control.driven import motors_of
 from klingel.control.feedforward import ContactDesign
+from klingel.control.fit import misfits
 from klingel.control.motors import Motors, command_motors
 from klingel.control.traction import Traction
+from klingel.errors import Problem
 
 if TYPE_CHECKING:
     from klingel.track import Track
@@ -84,6 +87,10 @@ class SolidLike:
             "notch_width",
         )
         check_positive(self, (*names, "yaw_frequency", "yaw_speed", "yaw_share", "sensor_frequency"))
+
+    def problems(self, vehicle: Vehicle) -> Iterator[Problem]:
+        """Why it does not fit a vehicle."""
+        return misfits(self, vehicle, needs=("axle_bridge", "drive", "steering"), take="mechatronic_irw")
 
     def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any]:
         """The block diagram for a vehicle at a speed [m/s] on a track whose curvature the database knows.

@@ -6,17 +6,19 @@ from __future__ import annotations
 import hashlib
 import tomllib
 from importlib import resources
+from typing import Any
 
 from klingel.errors import InputError, nearest
 from klingel.records import validated
 from klingel.vehicle import InductionDrive, Vehicle
+from klingel.vehicle.base import resolved
 
 
 def names() -> list[str]:
     """Names of the library's vehicles, sorted.
 
     >>> names()
-    ['manchester_coach', 'mechatronic_irw']
+    ['actuated_coach', 'manchester_coach', 'mechatronic_irw', 'mechatronic_solid', 'trailed_irw']
     """
     files = resources.files(__name__).iterdir()
     return sorted(f.name.removesuffix(".toml") for f in files if f.name.endswith(".toml"))
@@ -30,7 +32,12 @@ def vehicle(name: str) -> Vehicle:
     """
     if name not in names():
         raise InputError.single("vehicle", name, "is not in the library", remedy=nearest(name, names()))
-    return Vehicle.from_tables(tomllib.loads(text(name)), file=f"{name}.toml")
+    return Vehicle.from_tables(tables(name), file=f"{name}.toml")
+
+
+def tables(name: str) -> dict[str, Any]:
+    """The tables of that vehicle's file, with those of its base."""
+    return resolved(tomllib.loads(text(name)), lambda file: tomllib.loads(text(file.removesuffix(".toml"))))
 
 
 def drives() -> list[str]:

@@ -23,8 +23,11 @@ from klingel.vehicle import Vehicle
 
 STRATEGIES: dict[str, type[Any]] = {
     "passive": control.Passive,
+    "passive_irw": control.PassiveIRW,
+    "trailed_irw": control.TrailedIRW,
     "solid_like": control.SolidLike,
     "irw_like": control.IRWLike,
+    "yaw_moment": control.YawMoment,
 }
 """Names of strategies in files."""
 
@@ -109,7 +112,7 @@ def read(path: str | Path) -> Scenario:
     Keys: `vehicle` (a name of the library, or the path of a vehicle file relative to this one), `speed`, one of the
     tables `[track.curve]`, `[[track.segment]]` and the key `track.straight`, `[control]` with `strategy` and its
     parameters, `[sensors]` with a table a kind of sensor (`[sensors.gyro]`) and `typical = true` for all others,
-    `[database]` with the keywords of `Track.mistaken` (its `curve` is called `only` here) or a course as in `[track]`,
+    `[database]` with the keywords of `Track.mistaken` or a course as in `[track]`,
     `rail` and `wheel` (names of standard profiles or paths of measured ones), `[creep_options]`,
     `[adhesion]` with `[[adhesion.patch]]`, and every other keyword of Scenario.
     """
@@ -187,7 +190,7 @@ def _database(table: object, track: Track) -> Track:
         courses = any(getattr(given, key) is not None for key in ("straight", "curve", "segment"))
         base = _course(given) if courses else track
         return base.mistaken(
-            curvature_scale=given.curvature_scale, cant_scale=given.cant_scale, curve=given.only, shift=given.shift
+            curvature_scale=given.curvature_scale, cant_scale=given.cant_scale, only=given.only, shift=given.shift
         )
     except InputError as error:
         raise error.within("database") from None

@@ -46,7 +46,10 @@ class Strategy(Protocol):
     """What steers and drives a vehicle."""
 
     def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any] | None:
-        """The controller as the core's control spec; None leaves the vehicle to itself."""
+        """The controller as the core's control spec; None leaves the vehicle to itself.
+
+        A strategy may also have `problems(vehicle)`, why it does not fit a vehicle: a Scenario asks before the run.
+        """
         ...
 
 
@@ -231,6 +234,7 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
     if not isinstance(scenario.database, Track | None):
         yield Problem("database", scenario.database, "is no track", "give a klingel.Track, or None")
     yield from _along_track_problems(scenario)
+    yield from getattr(scenario.control, "problems", _fits)(scenario.vehicle)
     if not abs(scenario.rail_inclination) <= 0.1:
         yield Problem(
             "rail_inclination", scenario.rail_inclination, "is too steep", "give a slope such as 1/40 = 0.025"
@@ -257,6 +261,11 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
     if scenario.step > 0.0:
         yield from _step_problems(scenario)
     yield from _run_problems(scenario)
+
+
+def _fits(_: Vehicle) -> Iterator[Problem]:
+    """Of a strategy that does not say what vehicle it is made for."""
+    return iter(())
 
 
 def _along_track_problems(scenario: Scenario) -> Iterator[Problem]:

@@ -159,12 +159,12 @@ class Track:
         *,
         curvature_scale: Quantity = 1.0,
         cant_scale: Quantity = 1.0,
-        curve: int | None = None,
+        only: int | None = None,
         shift: Quantity = 0.0,
     ) -> Track:
         """This track as a database with mistakes has it, for `Scenario(database=...)`.
 
-        curvature_scale, cant_scale: factors on all curves, or on one `curve` alone (1 is the first): 1.1 is a tenth
+        curvature_scale, cant_scale: factors on all curves, or `only` on one of them (1 is the first): 1.1 is a tenth
         too much, 0 a missing curve (give both), -1 one of the wrong hand; shift [m]: how much farther along the
         track everything lies, nearer for a negative one.
         Errors: InputError for a curve that there is not, and for what is no track.
@@ -173,11 +173,11 @@ class Track:
         >>> wrong = track.mistaken(curvature_scale=1.1, shift="-30 m")
         >>> float(wrong.curvature(220.0)) == 1.1 * float(track.curvature(250.0))
         True
-        >>> float(abs(track.mistaken(curvature_scale=0, cant_scale=0, curve=1).cant([300.0, 500.0])).max())
+        >>> float(abs(track.mistaken(curvature_scale=0, cant_scale=0, only=1).cant([300.0, 500.0])).max())
         0.0
         """
         factors = (to_si(curvature_scale, "1", key="curvature_scale"), to_si(cant_scale, "1", key="cant_scale"))
-        wrong = tuple(scaled(self.segments, *factors, curve))
+        wrong = tuple(scaled(self.segments, *factors, only))
         by = to_si(shift, "m", key="shift")
         if not abs(by) < self.length:
             raise InputError.single("shift", shift, "is beyond the track", remedy=f"give less than {self.length:g} m")

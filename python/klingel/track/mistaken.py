@@ -32,16 +32,16 @@ def curves(segments: Sequence[Segment]) -> list[range]:
     return found
 
 
-def scaled(segments: Sequence[Segment], curvature: float, cant: float, curve: int | None) -> Iterator[Segment]:
-    """Curvature and cant times a factor each, of one curve (1 is the first) or, for None, of all.
+def scaled(segments: Sequence[Segment], curvature: float, cant: float, only: int | None) -> Iterator[Segment]:
+    """Curvature and cant times a factor each, of `only` one curve (1 is the first) or, for None, of all.
 
     Errors: InputError for a curve that there is not.
     """
     found = curves(segments)
-    if curve is not None and not (type(curve) is int and 1 <= curve <= len(found)):
+    if only is not None and not (type(only) is int and 1 <= only <= len(found)):
         remedy = f"give 1 to {len(found)}" if found else "this track is straight"
-        raise InputError.single("curve", curve, "is not of this track", remedy=remedy)
-    wrong = range(len(segments)) if curve is None else found[curve - 1]
+        raise InputError.single("only", only, "is not of this track", remedy=remedy)
+    wrong = range(len(segments)) if only is None else found[only - 1]
     for i, segment in enumerate(segments):
         if i in wrong:
             yield replace(segment, curvature=_times(segment.curvature, curvature), cant=_times(segment.cant, cant))

@@ -11,8 +11,17 @@ from pydantic_core import PydanticCustomError
 
 from klingel.errors import InputError
 from klingel.records import Parameter, Record, parameters, read_toml, validated
+from klingel.vehicle.base import resolved
 from klingel.vehicle.bodies import AxleBridge, Geometry, RigidBody, SolidWheelset, WheelProfile
-from klingel.vehicle.drive import AnyDrive, Drive, InductionDrive, SteeringActuator, Transmission
+from klingel.vehicle.drive import (
+    Actuator,
+    AnyDrive,
+    Drive,
+    InductionDrive,
+    SecondaryActuator,
+    SteeringActuator,
+    Transmission,
+)
 from klingel.vehicle.resistance import RunningResistance
 from klingel.vehicle.suspension import (
     AntiRollBar,
@@ -28,8 +37,9 @@ from klingel.vehicle.suspension import (
 class Vehicle(Record):
     """Bogie vehicle: one body, two bogies, four wheelsets, solid or with independently rotating wheels.
 
-    Exactly one of `wheelset` (solid) and `axle_bridge` (two wheels, each with its own spin) is given. A drive and a
-    steering actuator need an axle bridge, and an axle bridge needs a torque link that holds its pitch.
+    Exactly one of `wheelset` (solid) and `axle_bridge` (two wheels, each with its own spin) is given. A drive needs an
+    axle bridge, and an axle bridge needs a torque link that holds its pitch. `steering`: actuators between wheelset and
+    bogie; `secondary_steering`: between bogie and body.
 
     >>> from klingel import library
     >>> coach = library.vehicle("manchester_coach")
@@ -55,12 +65,17 @@ class Vehicle(Record):
     torque_link: TorqueLink | None = None
     drive: AnyDrive | None = None
     steering: SteeringActuator | None = None
+    secondary_steering: SecondaryActuator | None = None
     running_resistance: RunningResistance | None = None
 
     @classmethod
     def read(cls, path: str | Path) -> Self:
-        """The vehicle of a TOML file; errors: InputError with every problem, naming file, key, value and remedy."""
-        return validated(cls, read_toml(path), file=str(path))
+        """The vehicle of a TOML file; `base` names another file beside it that it is a variant of.
+
+        Errors: InputError with every problem, naming file, key, value and remedy.
+        """
+        folder = Path(path).parent
+        return validated(cls, resolved(read_toml(path), lambda file: read_toml(folder / file)), file=str(path))
 
     @classmethod
     def from_tables(cls, tables: dict[str, Any], *, file: str | None = None) -> Self:
@@ -126,7 +141,7 @@ class Vehicle(Record):
         if (self.wheelset is None) == (self.axle_bridge is None):
             raise _inconsistent("needs either a wheelset or an axle_bridge", "give exactly one of the two tables")
         if self.axle_bridge is None:
-            extra = [key for key in ("torque_link", "drive", "steering") if getattr(self, key) is not None]
+            extra = [key for key in ("torque_link", "drive") if getattr(self, key) is not None]
             if extra:
                 raise _inconsistent(f"{extra[0]} needs an axle_bridge", f"remove [{extra[0]}] or give an axle_bridge")
         elif self.torque_link is None:
@@ -145,6 +160,7 @@ def _inconsistent(message: str, remedy: str) -> PydanticCustomError:
 
 
 __all__ = [
+    "Actuator",
     "AntiRollBar",
     "AnyDrive",
     "AxleBridge",
@@ -156,6 +172,7 @@ __all__ = [
     "RigidBody",
     "RunningResistance",
     "Secondary",
+    "SecondaryActuator",
     "SolidWheelset",
     "SteeringActuator",
     "TorqueLink",

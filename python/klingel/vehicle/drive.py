@@ -1,8 +1,9 @@
-"""Drive of one wheel, steering actuator and running resistance as tables of a file.
+"""Drive of one wheel and actuators as tables of a file.
 Symbols are those of Perez et al. (2004), Eqs (2) to (11); the names say what they are."""
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
@@ -16,6 +17,7 @@ from klingel.units import (
     ForceRate,
     Frequency,
     Inductance,
+    Length,
     PositiveAngularStiffness,
     PositiveForce,
     PositiveInertia,
@@ -101,8 +103,8 @@ AnyDrive = Annotated[
 """A drive of either kind; a file's `kind` tells which, "dc" if it says nothing."""
 
 
-class SteeringActuator(Sourced):
-    """Longitudinal electromechanical actuator at both tips of a wheelset, between axle box and bogie frame.
+class Actuator(Sourced):
+    """Longitudinal electromechanical actuator, one on each side.
 
     Second-order force dynamics with `bandwidth` and `damping_ratio`; half stroke; stop_stiffness of its end stops.
     """
@@ -114,3 +116,23 @@ class SteeringActuator(Sourced):
     damping_ratio: PositiveNumber
     stroke: PositiveLength
     stop_stiffness: PositiveStiffness
+
+    @property
+    def moment_max(self) -> float:
+        """Yaw moment of the two together [N m]."""
+        return 2.0 * self.half_spacing * self.force_max
+
+    @property
+    def lag(self) -> float:
+        """Delay for slow commands, 2 zeta/w [s]."""
+        return 2.0 * self.damping_ratio / (2.0 * math.pi * self.bandwidth)
+
+
+class SteeringActuator(Actuator):
+    """At both tips of a wheelset, between axle box and bogie frame, at the height of the axle."""
+
+
+class SecondaryActuator(Actuator):
+    """Between bogie frame and body, two per bogie, in place of yaw dampers or beside them; height of both ends."""
+
+    height: Length

@@ -88,7 +88,12 @@ pub struct Instant {
 
 impl Instant {
     /// The start of a run, of a controller that has always been there.
-    const STEADY: Self = Self { sample: 0, interval: 0.0, linear: true };
+    pub const STEADY: Self = Self { sample: 0, interval: 0.0, linear: true };
+
+    /// Since the start of the run \[s\].
+    pub fn time(self) -> f64 {
+        self.sample as f64 * self.interval
+    }
 }
 
 /// One compiled block; slots index the signals of the controller.
@@ -108,12 +113,17 @@ pub enum Block {
     Quantise { input: usize, step: f64 },
     Noise { std: f64, seed: u64 },
     Hold { input: usize, samples: usize },
+    External { inputs: Vec<usize>, outputs: usize, samples: usize },
 }
 
 impl Block {
     /// Signals it writes.
     pub fn signals(&self) -> usize {
-        if let Self::StateSpace { filter, .. } = self { filter.outputs() } else { 1 }
+        match self {
+            Self::StateSpace { filter, .. } => filter.outputs(),
+            Self::External { outputs, .. } => *outputs,
+            _ => 1,
+        }
     }
 
     /// Numbers it remembers from sample to sample.
@@ -126,13 +136,18 @@ impl Block {
             Self::Delay { samples, .. } => *samples,
             // of the linear law the inputs before, of the other one the input held
             Self::Hold { samples, .. } => *samples - 1,
+            Self::External { outputs, .. } => *outputs,
             _ => 0,
         }
     }
 
     /// Numbers that a step writes over.
     pub fn scratch(&self) -> usize {
-        if let Self::StateSpace { inputs, filter } = self { inputs.len() + filter.states() } else { 0 }
+        match self {
+            Self::StateSpace { inputs, filter } => inputs.len() + filter.states(),
+            Self::External { inputs, .. } => inputs.len(),
+            _ => 0,
+        }
     }
 
     /// Goes to the steady state for constant inputs, a PI with the integral given, within limits or without; `out` is
@@ -168,10 +183,11 @@ impl Block {
         memory: &mut [S],
         scratch: &mut [S],
         (signals, out): (&[S], &mut [S]),
-        Instant { sample, interval: ts, linear }: Instant,
+        now: Instant,
     ) -> Result<(), Outside> {
+        let Instant { sample, interval: ts, linear } = now;
         out[0] = match self {
-            Self::Clock => S::constant(sample as f64 * ts),
+            Self::Clock => S::constant(now.time()),
             Self::Sum { terms, bias } => {
                 terms.iter().fold(S::constant(*bias), |sum, &(slot, gain)| sum + gain.value(signals) * signals[slot])
             }
@@ -215,8 +231,24 @@ impl Block {
                 }
                 memory[0]
             }
+            // whoever runs it has written what its controller gave into the memory
+            Self::External { .. } => {
+                out.copy_from_slice(memory);
+                return Ok(());
+            }
         };
         Ok(())
+    }
+
+    /// What an external controller is asked at this sample; none of a block of the core and in between its samples.
+    pub fn asks<'a, S: Scalar>(&self, scratch: &'a mut [S], signals: &[S], now: Instant) -> Option<&'a [S]> {
+        match self {
+            Self::External { inputs, samples, .. } if now.sample.rem_euclid(*samples as i64) == 0 => {
+                gather(scratch, inputs, signals);
+                Some(&scratch[..inputs.len()])
+            }
+            _ => None,
+        }
     }
 
     /// Where a limit or corner is near: how far off, as a part of the law's range; none for a smooth law or one far off.

@@ -94,7 +94,8 @@ fn compile_block(spec: &BlockSpec, names: &Names) -> Result<Block, ControlError>
             Block::Filter { input: slot(input)?, filter: Sections::new(sections.clone()) }
         }
         BlockSpec::StateSpace { inputs, outputs, a, b, c, d, .. } => {
-            let filter = compile_state_space(block, [inputs.len(), outputs.len()], [a, b, c, d])?;
+            let sizes = [inputs.len(), some(block, outputs)?.len()];
+            let filter = compile_state_space(block, sizes, [a, b, c, d])?;
             Block::StateSpace { inputs: names.slots(&place, inputs)?, filter }
         }
         BlockSpec::Pi { input, proportional, integral, lower, upper, .. } => Block::Pi(Pi {
@@ -126,6 +127,11 @@ fn compile_block(spec: &BlockSpec, names: &Names) -> Result<Block, ControlError>
         BlockSpec::Hold { input, samples, .. } => {
             Block::Hold { input: slot(input)?, samples: counted(block, *samples)? }
         }
+        BlockSpec::External { inputs, outputs, samples, .. } => Block::External {
+            inputs: names.slots(&place, inputs)?,
+            outputs: some(block, outputs)?.len(),
+            samples: counted(block, *samples)?,
+        },
     })
 }
 
@@ -149,6 +155,10 @@ fn counted(block: &str, samples: usize) -> Result<usize, ControlError> {
     if samples > 0 { Ok(samples) } else { Err(bad(block, "samples", 0, "give at least 1, or leave the block out")) }
 }
 
+fn some<'a>(block: &str, outputs: &'a [String]) -> Result<&'a [String], ControlError> {
+    if outputs.is_empty() { Err(bad(block, "the number of outputs", 0, "name at least one")) } else { Ok(outputs) }
+}
+
 const NO_POLE_AT_ONE: &str = "it has no steady state to start from; use a `pi` block for an integral";
 
 fn check_section(block: &str, s: &Section) -> Result<(), ControlError> {
@@ -164,9 +174,6 @@ fn compile_state_space(
     [inputs, outputs]: [usize; 2],
     [a, b, c, d]: [&Vec<Vec<f64>>; 4],
 ) -> Result<StateSpace, ControlError> {
-    if outputs == 0 {
-        return Err(bad(block, "the number of outputs", 0, "name at least one"));
-    }
     let n = a.len();
     let shape = |m: &[Vec<f64>], rows, columns| m.len() == rows && m.iter().all(|r| r.len() == columns);
     if !(shape(a, n, n) && shape(b, n, inputs) && shape(c, outputs, n) && shape(d, outputs, inputs)) {

@@ -1,15 +1,16 @@
 //! A controller in a run: a block diagram with its memory.
 //! The engine calls `reset` once and `step` at every sample, and holds the commands in between.
 
-use super::compile;
 use super::diagram::{Diagram, Memory};
 use super::error::ControlError;
+use super::external::{Attached, Externals};
 use super::spec::ControlSpec;
 
-/// A block diagram ready to run. Clone it to run the same controller for another vehicle.
-#[derive(Clone, Debug)]
+/// A block diagram ready to run.
+#[derive(Debug)]
 pub struct Controller {
     diagram: Diagram,
+    externals: Vec<Attached>,
     memory: Memory<f64>,
     integrals: Vec<f64>,
     commands: Vec<f64>,
@@ -20,10 +21,20 @@ impl Controller {
     /// Checks and compiles a diagram.
     ///
     /// # Errors
-    /// Names that are unknown or taken twice, numbers out of their range, filters with a pole at z = 1.
+    /// Names that are unknown or taken twice, numbers out of their range, filters with a pole at z = 1, controllers
+    /// outside the core.
     pub fn compile(spec: &ControlSpec) -> Result<Self, ControlError> {
-        let diagram = compile::compile(spec)?;
+        Self::with(spec, Externals::new())
+    }
+
+    /// As `compile`, with the controllers outside the core by the names of their blocks.
+    ///
+    /// # Errors
+    /// As `compile`; a block without its controller, a controller without its block.
+    pub fn with(spec: &ControlSpec, externals: Externals) -> Result<Self, ControlError> {
+        let diagram = Diagram::compile(spec)?;
         Ok(Self {
+            externals: Attached::all(&spec.blocks, externals)?,
             memory: diagram.memory(),
             integrals: vec![0.0; diagram.integrators()],
             commands: vec![0.0; diagram.command_targets.len()],
@@ -62,7 +73,8 @@ impl Controller {
     /// # Errors
     /// As `step`.
     pub fn reset(&mut self, measurements: &[f64]) -> Result<(), ControlError> {
-        self.diagram.settle(&mut self.memory, measurements, &self.integrals)?;
+        let Self { diagram, externals, memory, integrals, .. } = self;
+        diagram.settle_with(memory, measurements, integrals, calling(externals))?;
         self.put_out();
         Ok(())
     }
@@ -80,9 +92,10 @@ impl Controller {
     /// One sample: measurements in (SI, in the order of `measurement_names`), commands and probes out.
     ///
     /// # Errors
-    /// A wrong number of measurements, a value that is not finite, an input outside its table.
+    /// A wrong number of measurements, a value that is not finite, an input outside its table; a controller outside the
+    /// core that fails.
     pub fn step(&mut self, measurements: &[f64]) -> Result<(), ControlError> {
-        self.diagram.step(&mut self.memory, measurements)?;
+        self.diagram.step_with(&mut self.memory, measurements, calling(&mut self.externals))?;
         self.put_out();
         Ok(())
     }
@@ -100,6 +113,14 @@ impl Controller {
     /// The probed signals of the last `reset` or `step`, in the order of `probe_channels`.
     pub fn probes(&self) -> &[f64] {
         &self.probes
+    }
+}
+
+/// Calls the external controller of a name.
+fn calling(externals: &mut [Attached]) -> impl FnMut(&str, f64, &[f64], &mut [f64]) -> Result<(), ControlError> {
+    |name, time, inputs, outputs| match externals.iter_mut().find(|e| e.name == name) {
+        Some(external) => external.step(time, inputs, outputs),
+        None => Err(ControlError::ExternalMissing { name: name.into() }),
     }
 }
 

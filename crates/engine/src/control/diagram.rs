@@ -2,6 +2,7 @@
 //! It never changes; what it remembers is a `Memory` of numbers, or of dual numbers for steady states and linear models.
 
 use super::block::{Block, Instant, Pi};
+use super::compile;
 use super::error::ControlError;
 use super::lookup::Outside;
 use super::spec::ControlSpec;
@@ -50,6 +51,14 @@ pub struct BlockKink {
 }
 
 impl Diagram {
+    /// Checks and compiles a diagram.
+    ///
+    /// # Errors
+    /// Names that are unknown or taken twice, numbers out of their range, filters with a pole at z = 1.
+    pub fn compile(spec: &ControlSpec) -> Result<Self, ControlError> {
+        compile::compile(spec)
+    }
+
     pub(super) fn new(
         spec: &ControlSpec,
         blocks: Vec<(String, Block)>,
@@ -103,6 +112,17 @@ impl Diagram {
         self.blocks.iter().filter_map(|b| if let Block::Pi(pi) = &b.block { Some(pi) } else { None })
     }
 
+    /// Whether it has steady states and linear models.
+    ///
+    /// # Errors
+    /// A controller outside the core, which has none.
+    pub fn is_linear(&self) -> Result<(), ControlError> {
+        match self.blocks.iter().find(|b| matches!(b.block, Block::External { .. })) {
+            Some(external) => Err(not_linear(&external.name)),
+            None => Ok(()),
+        }
+    }
+
     /// Goes to the state that constant measurements would lead to, each PI with its given integral.
     ///
     /// # Errors
@@ -113,9 +133,20 @@ impl Diagram {
         measurements: &[S],
         integrals: &[S],
     ) -> Result<(), ControlError> {
+        self.settle_with(memory, measurements, integrals, |name, _, _, _| Err(not_linear(name)))
+    }
+
+    /// As `settle`; `outside(name, time, inputs, outputs)` calls the external controllers.
+    pub(super) fn settle_with<S: Scalar>(
+        &self,
+        memory: &mut Memory<S>,
+        measurements: &[S],
+        integrals: &[S],
+        outside: impl FnMut(&str, f64, &[S], &mut [S]) -> Result<(), ControlError>,
+    ) -> Result<(), ControlError> {
         memory.samples = 0;
         let (mut integrals, limited) = (integrals.iter(), memory.limited);
-        self.sweep(memory, measurements, |block, states, scratch, signals| {
+        self.sweep(memory, measurements, Instant::STEADY, outside, |block, states, scratch, signals| {
             let integral = if matches!(block, Block::Pi(_)) { integrals.next().copied() } else { None };
             block.reset(states, scratch, signals, integral.unwrap_or_default(), limited)
         })
@@ -124,11 +155,24 @@ impl Diagram {
     /// One sample.
     ///
     /// # Errors
-    /// A wrong number of measurements, a value that is not finite, an input outside its table.
+    /// A wrong number of measurements, a value that is not finite, an input outside its table; a controller outside the
+    /// core.
     pub fn step<S: Scalar>(&self, memory: &mut Memory<S>, measurements: &[S]) -> Result<(), ControlError> {
+        self.step_with(memory, measurements, |name, _, _, _| Err(not_linear(name)))
+    }
+
+    /// As `step`; `outside(name, time, inputs, outputs)` calls the external controllers.
+    pub(super) fn step_with<S: Scalar>(
+        &self,
+        memory: &mut Memory<S>,
+        measurements: &[S],
+        outside: impl FnMut(&str, f64, &[S], &mut [S]) -> Result<(), ControlError>,
+    ) -> Result<(), ControlError> {
         memory.samples += 1;
         let now = Instant { sample: memory.samples, interval: self.sample_time, linear: memory.linear };
-        self.sweep(memory, measurements, |block, states, scratch, signals| block.step(states, scratch, signals, now))
+        self.sweep(memory, measurements, now, outside, |block, states, scratch, signals| {
+            block.step(states, scratch, signals, now)
+        })
     }
 
     /// The next `step` is that of the start.
@@ -140,6 +184,8 @@ impl Diagram {
         &self,
         memory: &mut Memory<S>,
         measurements: &[S],
+        now: Instant,
+        mut outside: impl FnMut(&str, f64, &[S], &mut [S]) -> Result<(), ControlError>,
         mut law: impl FnMut(&Block, &mut [S], &mut [S], (&[S], &mut [S])) -> Result<(), Outside>,
     ) -> Result<(), ControlError> {
         let offset = self.measurement_names.len();
@@ -156,6 +202,9 @@ impl Diagram {
             let own = &mut states[*memory..*memory + block.states()];
             let (before, after) = signals.split_at_mut(*signal);
             let out = &mut after[..block.signals()];
+            if let Some(inputs) = block.asks(scratch, before, now) {
+                outside(name, now.time(), inputs, own)?;
+            }
             law(block, own, scratch, (before, out)).map_err(|Outside { value, low, high }| {
                 ControlError::OutsideTable { block: name.clone(), value, low, high }
             })?;
@@ -189,4 +238,8 @@ impl Diagram {
         };
         self.blocks.iter().filter_map(kink).collect()
     }
+}
+
+fn not_linear(name: &str) -> ControlError {
+    ControlError::ExternalNotLinear { name: name.into() }
 }

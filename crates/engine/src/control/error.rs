@@ -28,4 +28,26 @@ pub enum ControlError {
          extend the table or set edge = \"hold\""
     )]
     OutsideTable { block: String, value: f64, low: f64, high: f64 },
+    #[error(
+        "`{name}` is a controller outside the core and none was given; \
+         pass it with the spec: simulate_spec(spec, externals={{...}}), or run the scenario it belongs to"
+    )]
+    ExternalMissing { name: String },
+    #[error(
+        "`{name}` was given as a controller outside the core, but no block is called so; give the name of its block"
+    )]
+    ExternalUnknown { name: String },
+    #[error(
+        "`{name}` is a controller outside the core, of which there is no steady state and no linear model; \
+         give it as blocks or as a discrete StateSpace"
+    )]
+    ExternalNotLinear { name: String },
+    #[error("`{name}` {text}")]
+    External { name: String, text: String },
+    #[error(
+        "`{name}` gives {given} commands, {wanted} are declared ({expected}); return one number each, in this order"
+    )]
+    ExternalSize { name: String, given: usize, wanted: usize, expected: String },
+    #[error("`{name}` gives {value} for `{output}`; check what it divides by and what it measures")]
+    ExternalValue { name: String, output: String, value: f64 },
 }

@@ -154,13 +154,16 @@ pub enum BlockSpec {
     /// Every `samples`-th input (>= 1), that of the start included, held in between; in linear models the mean over the
     /// last `samples` inputs, which is what does not depend on when they are taken.
     Hold { name: String, input: String, samples: usize },
+    /// A controller outside the core (`control::External`), called at every `samples`-th sample (>= 1), that of the start
+    /// included; its outputs are held in between.
+    External { name: String, inputs: Vec<String>, outputs: Vec<String>, samples: usize },
 }
 
 impl BlockSpec {
     /// The signals that it writes.
     pub fn signals(&self) -> &[String] {
         match self {
-            Self::StateSpace { outputs, .. } => outputs,
+            Self::StateSpace { outputs, .. } | Self::External { outputs, .. } => outputs,
             _ => core::slice::from_ref(self.name()),
         }
     }
@@ -181,7 +184,8 @@ impl BlockSpec {
             | Self::Lookup { name, .. }
             | Self::Quantise { name, .. }
             | Self::Noise { name, .. }
-            | Self::Hold { name, .. } => name,
+            | Self::Hold { name, .. }
+            | Self::External { name, .. } => name,
         }
     }
 }

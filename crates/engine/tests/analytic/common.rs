@@ -1,6 +1,7 @@
 //! Small specs for the analytic cases, and a plant that is integrated from any state.
 //! Test bodies move on a track frame but need no wheels; gravity is an argument of the spec.
 
+use klingel_engine::control::Externals;
 use klingel_engine::integrate::Etdrk4;
 use klingel_engine::rates::Workspace;
 use klingel_engine::spec::Spec;
@@ -73,7 +74,7 @@ pub fn spec(value: &Value) -> Spec {
 }
 
 pub fn run(value: &Value) -> TimeSeries {
-    simulate(&spec(value), &Progress::default()).expect("a run")
+    simulate(&spec(value), Externals::new(), &Progress::default()).expect("a run")
 }
 
 /// One channel over time.
