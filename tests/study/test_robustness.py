@@ -41,6 +41,15 @@ def active() -> Scenario:
     return Scenario(vehicle, CURVE, speed="90 km/h", step="1 ms", control=control.IRWLike())
 
 
+class Idle:
+    """A controller in Python that does nothing."""
+
+    def reset(self) -> None: ...
+
+    def step(self, t: float, measurements: dict[str, float]) -> list[float]:
+        return [0.0]
+
+
 def quiet() -> Console:
     return Console(file=io.StringIO(), width=150)
 
@@ -206,6 +215,18 @@ def test_rows_survive_an_interruption(tmp_path: Path) -> None:
     assert table["outcome"].tolist() == [COMPLETED, "ended, early"]
     again.sort(["a", "b"])
     assert (tmp_path / ROWS).read_text().splitlines()[1:] == ["a,nan,completed", 'b,0.3333333333333333,"ended, early"']
+
+
+def test_a_controller_in_python_runs_and_its_code_is_part_of_the_plan() -> None:
+    idle = control.PythonController(
+        Idle(), sample_time="10 ms", measurements=["bogie1.yaw_rate"], commands=["bogie1.wheelset1.actuator_left.force"]
+    )
+    plan = robustness.plan_of(active().replace(control=idle, duration="0.1 s"), runs=1)
+    assert "curvature_error" in plan.left_out
+    assert "return [0.0]" in robustness.asked(plan)["code"]
+    simulated, row = robustness.one_run(plan, "nominal")
+    assert simulated == pytest.approx(0.1)
+    assert row["outcome"] == COMPLETED
 
 
 def test_rows_of_another_study_are_not_mixed(tmp_path: Path) -> None:

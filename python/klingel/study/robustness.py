@@ -3,6 +3,7 @@ Rows are kept as they finish; the same seed gives the same runs, whatever the nu
 
 from __future__ import annotations
 
+import inspect
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,7 +20,7 @@ from klingel.control.sensor import whole_of
 from klingel.core import core
 from klingel.errors import InputError, SimulationError
 from klingel.lower import lower
-from klingel.scenario import Scenario
+from klingel.scenario import Scenario, Strategy
 from klingel.study import robustness_output as output
 from klingel.study.folder import conclude, study_folder
 from klingel.study.robustness_effects import EFFECTS, changed
@@ -173,7 +174,7 @@ def run(
     screen = console or default_console()
     plan = plan_of(scenario, runs=runs, seed=seed, chosen=chosen, alone=alone)
     folder = study_folder(out)
-    rows = Rows(folder, _said(plan), ("part", "input", *plan.chosen, *FIGURES), fresh=fresh)
+    rows = Rows(folder, asked(plan), ("part", "input", *plan.chosen, *FIGURES), fresh=fresh)
     pairs = {pair.name: pair.under(plan.scenario) for pair in PAIRS} if "conicity" in plan.chosen else {}
     prepare({"given": plan.scenario} | pairs, screen)
     names = list(plan.runs)
@@ -227,12 +228,24 @@ def _parts(table: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame, pd.Series[A
     return part.get("drawn", nothing), part.get("alone", nothing), one["nominal"], one["given"]
 
 
-def _said(plan: Plan) -> dict[str, Any]:
+def asked(plan: Plan) -> dict[str, Any]:
     """All that the rows depend on, but how many there are."""
     return {
         "spec": lower(plan.scenario),
+        "code": _code(plan.scenario.control),
         "inputs": {name: [each.kind, each.low, each.high, list(each.numbers)] for name, each in plan.chosen.items()},
         "seed": plan.seed,
         "version": klingel.__version__,
         "core": core().build_info()["source_hash"],
     }
+
+
+def _code(strategy: Strategy | None) -> str:
+    """Of a controller in Python, which the spec only names; empty for a strategy of blocks."""
+    controller = getattr(strategy, "controller", None)
+    if controller is None:
+        return ""
+    try:
+        return inspect.getsource(type(controller))
+    except (OSError, TypeError):  # typed in by hand: there is no file to read
+        return type(controller).__name__
