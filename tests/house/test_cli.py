@@ -88,7 +88,7 @@ def test_bad_input_is_one_message_and_exit_2(
     ("change", "said"),
     [
         (('"108 km/h"', '"900 km/h"'), "is more than the motor gives"),
-        (("mechatronic_irw", "manchester_coach"), "manchester_coach is passive"),
+        (("mechatronic_irw", "manchester_coach"), "which manchester_coach lacks; take mechatronic_irw"),
         (('"0.2 s"', '"0.2 s"\nstep = "5 ms"'), "step = 0.005: does not divide"),
     ],
 )

@@ -14,7 +14,19 @@ from klingel.track import Track, cases
 
 STRATEGIES = {
     "manchester_coach": (None, control.Passive()),
-    "mechatronic_irw": (None, control.SolidLike(), control.IRWLike(), control.IRWLike(curvature="database")),
+    "mechatronic_irw": (
+        None,
+        control.SolidLike(),
+        control.IRWLike(),
+        control.IRWLike(curvature="database"),
+        control.PassiveIRW(),
+        control.LateralFeedback(),
+        control.TorqueVectoring(),
+        control.Feedforward(),
+    ),
+    "trailed_irw": (control.PassiveIRW(), control.TrailedIRW(), control.LateralFeedback()),
+    "mechatronic_solid": (None, control.YawMoment(), control.YawRelaxation(), control.Feedforward()),
+    "actuated_coach": (None, control.SecondaryYaw()),
 }
 CASES = [(name, strategy) for name, strategies in STRATEGIES.items() for strategy in strategies]
 

@@ -21,10 +21,10 @@ def tables(name: str = "mechatronic_irw") -> Tables:
 
 @pytest.mark.parametrize("name", library.names())
 def test_library_round_trip(name: str, tmp_path: Path) -> None:
-    copy = tmp_path / "copy.toml"
-    copy.write_text(library.text(name))
+    for each in library.names():
+        (tmp_path / f"{each}.toml").write_text(library.text(each))
     vehicle = library.vehicle(name)
-    assert Vehicle.read(copy) == vehicle
+    assert Vehicle.read(tmp_path / f"{name}.toml") == vehicle
     assert Vehicle.model_validate(vehicle.model_dump()) == vehicle
 
 
@@ -54,11 +54,27 @@ def test_status_of_single_keys() -> None:
     assert status["primary.series_stiffness.z"] == "memory"
 
 
-def test_both_vehicles_share_body_bogies_and_secondary() -> None:
-    coach, irw = (library.vehicle(name) for name in library.names())
-    for part in ("geometry", "body", "bogie", "secondary", "lateral_stop", "anti_roll_bar", "traction_rod"):
-        assert getattr(coach, part) == getattr(irw, part)
-    assert irw.primary.stiffness.x < coach.primary.stiffness.x
+def test_all_vehicles_share_body_bogies_and_secondary() -> None:
+    coach = library.vehicle("manchester_coach")
+    for name in library.names():
+        vehicle = library.vehicle(name)
+        for part in ("geometry", "body", "bogie", "secondary", "lateral_stop", "anti_roll_bar", "traction_rod"):
+            assert getattr(coach, part) == getattr(vehicle, part)
+        assert vehicle.steering is None or vehicle.primary.stiffness.x < coach.primary.stiffness.x
+
+
+def test_variants_state_what_differs_from_their_base(tmp_path: Path) -> None:
+    irw, trailed = library.vehicle("mechatronic_irw"), library.vehicle("trailed_irw")
+    assert trailed == irw.replace(name=trailed.name, description=trailed.description, drive=None)
+    bad = tmp_path / "bad.toml"
+    (tmp_path / "coach.toml").write_text(library.text("manchester_coach"))
+    bad.write_text('base = "coach.toml"\nname = "bad"\ndescription = "bad"\nwithout = ["yaw_dampers"]\n')
+    with pytest.raises(InputError, match=r"bad\.toml: without = 'yaw_dampers': is not in coach\.toml.*'yaw_damper'"):
+        Vehicle.read(bad)
+    second = tmp_path / "second.toml"
+    second.write_text('base = "bad.toml"\n')
+    with pytest.raises(InputError, match=r"has a base itself; name coach\.toml"):
+        Vehicle.read(second)
 
 
 def test_axle_bridge_adds_up() -> None:

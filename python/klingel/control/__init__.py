@@ -3,6 +3,7 @@ S and I of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 20
 
 from klingel.control.basics import Timing
 from klingel.control.feedforward import ContactDesign
+from klingel.control.feedforward_steering import Feedforward
 from klingel.control.irw_like import IRWLike
 from klingel.control.lateral_feedback import LateralFeedback
 from klingel.control.passive import Passive
@@ -10,6 +11,7 @@ from klingel.control.passive_irw import PassiveIRW
 from klingel.control.secondary_yaw import SecondaryYaw
 from klingel.control.slip import SlipControl
 from klingel.control.solid_like import SolidLike
+from klingel.control.torque_vectoring import TorqueVectoring
 from klingel.control.traction import Traction
 from klingel.control.trailed_irw import TrailedIRW
 from klingel.control.yaw_moment import YawMoment
@@ -17,6 +19,7 @@ from klingel.control.yaw_relaxation import YawRelaxation
 
 __all__ = [
     "ContactDesign",
+    "Feedforward",
     "IRWLike",
     "LateralFeedback",
     "Passive",
@@ -25,6 +28,7 @@ __all__ = [
     "SlipControl",
     "SolidLike",
     "Timing",
+    "TorqueVectoring",
     "Traction",
     "TrailedIRW",
     "YawMoment",

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from klingel.control.basics import SPEED, SPEED_GRID, Timing, Wheelset, scheduled
-from klingel.control.diagram import Diagram
+from klingel.control.diagram import Diagram, Gain
 from klingel.control.discrete import Section, low_pass, slope_low_pass
 from klingel.control.feedforward import ContactDesign, SteeringGeometry, attack_angle_table
 from klingel.errors import InputError
@@ -24,10 +24,10 @@ BUTTERWORTH = 0.7
 
 @dataclass(frozen=True)
 class Plant:
-    """The numbers of one vehicle that a strategy is made from."""
+    """The numbers of one vehicle that a strategy is made from; steering: None where nothing steers."""
 
     geometry: SteeringGeometry
-    steering: SteeringActuator
+    steering: SteeringActuator | None
     radius: float
 
     @classmethod
@@ -36,8 +36,19 @@ class Plant:
         if vehicle.steering is None:
             remedy = f"{vehicle.name} is passive; take a vehicle with [steering], or no control"
             raise InputError.single("steering", None, "is missing", remedy=remedy)
-        radius = vehicle.geometry.wheel_radius
-        return cls(SteeringGeometry.of(vehicle), vehicle.steering, radius)
+        return cls(SteeringGeometry.of(vehicle), vehicle.steering, vehicle.geometry.wheel_radius)
+
+    @classmethod
+    def unsteered(cls, vehicle: Vehicle) -> Plant:
+        """For strategies that leave the steering actuators alone, or do without."""
+        return cls(SteeringGeometry.of(vehicle), None, vehicle.geometry.wheel_radius)
+
+    @property
+    def actuators(self) -> SteeringActuator:
+        """Errors: InputError where nothing steers."""
+        if self.steering is None:
+            raise InputError.single("steering", None, "is missing", remedy="make the plant with Plant.of")
+        return self.steering
 
     @property
     def speed_ratio(self) -> float:
@@ -47,12 +58,12 @@ class Plant:
     @property
     def moment_max(self) -> float:
         """Of both actuators of a wheelset together [N m]."""
-        return self.steering.moment_max
+        return self.actuators.moment_max
 
     @property
     def actuator_lag(self) -> float:
-        """Delay of the actuators for slow commands, 2 zeta/w [s]."""
-        return self.steering.lag
+        """Delay of the actuators for slow commands, 2 zeta/w [s]; nil without."""
+        return self.steering.lag if self.steering is not None else 0.0
 
 
 def speed_difference(d: Diagram, wheelset: Wheelset, timing: Timing) -> str:
@@ -60,6 +71,25 @@ def speed_difference(d: Diagram, wheelset: Wheelset, timing: Timing) -> str:
     left, right = (d.measure(f"{wheelset.name}.{side}.spin_speed") for side in ("left", "right"))
     now = d.sum(f"{wheelset.name}.wd.now", {left: 0.5, right: -0.5})
     return d.delay(f"{wheelset.name}.wd", now, timing.sensor_samples)
+
+
+def pair_feedback(
+    d: Diagram, w: Wheelset, name: str, quantity: str, *, common: Gain, opposed: Gain, centring: Gain | None = None
+) -> str:
+    """Feedback of both wheelsets of a bogie on their displacements: common q + (+-1) (opposed p + centring q).
+
+    q = (q1 + q2)/2 and p = (q1 - q2)/2 of `<wheelset>.<quantity>`, which tells the displacement: q how far the bogie is
+    aside, p how far it is turned; + for the leading wheelset. Its shares `<bogie>.<name>.<share>` are made once.
+    """
+    shares = {share: f"{w.bogie_name}.{name}.{share}" for share in ("mean", "half", "common", "opposed")}
+    if not d.has(shares["mean"]):
+        first, second = (f"{w.bogie_name}.wheelset{i}.{quantity}" for i in (1, 2))
+        d.sum(shares["mean"], {first: 0.5, second: 0.5})
+        d.sum(shares["half"], {first: 0.5, second: -0.5})
+        d.sum(shares["common"], {shares["mean"]: common})
+        turning: dict[str, Gain] = {shares["half"]: opposed}
+        d.sum(shares["opposed"], turning if centring is None else turning | {shares["mean"]: centring})
+    return d.sum(f"{w.name}.{name}", {shares["common"]: 1.0, shares["opposed"]: w.lead})
 
 
 def profile_of(track: Track, key: str) -> tuple[list[float], list[float]]:
@@ -198,6 +228,6 @@ def command_steering(d: Diagram, plant: Plant, w: Wheelset, moment: str, timing:
     limited = d.saturation(f"{w.name}.M.limited", moment, -plant.moment_max, plant.moment_max)
     sent = d.delay(f"{w.name}.M.sent", limited, timing.computation_samples)
     for side, sign in (("left", 1.0), ("right", -1.0)):
-        force = d.sum(f"{w.name}.F.{side}", {sent: sign / (2.0 * plant.steering.half_spacing)})
+        force = d.sum(f"{w.name}.F.{side}", {sent: sign / (2.0 * plant.actuators.half_spacing)})
         d.command(f"{w.name}.actuator_{side}.force", force)
     d.probe(f"{w.name}.steering_moment_command", "N m", sent)

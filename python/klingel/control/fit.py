@@ -34,12 +34,9 @@ def misfits(
     ...     print(problem)
     control = 'SolidLike': needs a motor for every wheel ([drive]), which trailed_irw lacks; take mechatronic_irw
     """
-    name = type(strategy).__name__
-    for table in needs:
-        if getattr(vehicle, table) is None:
-            message = f"needs {WORDS[table]} ([{table}]), which {vehicle.name} lacks"
-            yield Problem("control", name, message, f"take {take}")
-    for table in without:
-        if getattr(vehicle, table) is not None:
-            message = f"is made for a vehicle without {WORDS[table]} ([{table}]), which {vehicle.name} has"
-            yield Problem("control", name, message, f"take {take}")
+    lacking = [f"{WORDS[table]} ([{table}])" for table in needs if getattr(vehicle, table) is None]
+    surplus = [f"{WORDS[table]} ([{table}])" for table in without if getattr(vehicle, table) is not None]
+    messages = [f"needs {', '.join(lacking)}, which {vehicle.name} lacks"] if lacking else []
+    messages += [f"is made for vehicles without {', '.join(surplus)}, which {vehicle.name} has"] if surplus else []
+    if messages:
+        yield Problem("control", type(strategy).__name__, " and ".join(messages), f"take {take}")

@@ -26,7 +26,8 @@ class SecondaryYaw:
 
     damping: c of a bogie [N m s/rad]; as two yaw dampers of 200 kN s/m at 1.3 m.
     damping_frequency: corner of the high-pass [Hz]: transitions are slow, hunting is not.
-    relief: k, of the yaw moment of the secondary springs kpsi that is taken away; above 1 it turns the bogie further in.
+    relief: k, of the yaw moment of the secondary springs kpsi that is taken away; above 1 it turns the
+        bogie further in.
     relief_frequency: corner of the low-pass of the strokes [Hz]: above it the springs stay as they are.
     timing: sampling and delays.
 

@@ -15,6 +15,7 @@ from klingel.control.common import (
     database_curvature,
     database_curve,
     gyroscopic_moment,
+    pair_feedback,
     sense_inertia,
     speed_difference,
     steering_feedforward,
@@ -38,7 +39,9 @@ class SolidLike:
     """Differential speed control plus yaw-moment control; parameters with their reasons.
 
     coupling: damping between the wheels over f11 r0^2/V up to `coupling_speed` [m/s], falling with 1/V above: enough to
-        centre the wheelset, little enough that its hunting stays damped on the soft primary suspension.
+        centre the wheelsets, little enough that their hunting stays damped on the soft primary suspension.
+    common_share: of that damping where both wheelsets of a bogie err alike, which moves the bogie aside; where they err
+        opposedly, which turns it, all of it acts: docs/theory/control.md.
     slow_speed: running speed below which that damping stays [m/s]; delays and the transmission's torsion bear no more.
     integral_time: of the speed loop [s]. Slow, because integral coupling of two wheels acts as a spring at the hunting
         frequency; it only removes what friction and unequal radii leave.
@@ -59,15 +62,16 @@ class SolidLike:
     16
     """
 
-    coupling: float = 0.25
-    coupling_speed: float = 36.0
+    coupling: float = 0.36
+    coupling_speed: float = 56.0
+    common_share: float = 0.2
     slow_speed: float = 18.0
     integral_time: float = 5.0
     lead_pole: float = 0.002
     notch_frequency: float = 55.0
     notch_depth: float = 0.1
     notch_width: float = 0.5
-    yaw_frequency: float = 0.7
+    yaw_frequency: float = 0.5
     yaw_speed: float = 28.0
     yaw_share: float = 0.1
     sensor_frequency: float = 2.0
@@ -79,6 +83,7 @@ class SolidLike:
         names = (
             "coupling",
             "coupling_speed",
+            "common_share",
             "slow_speed",
             "integral_time",
             "lead_pole",
@@ -102,7 +107,9 @@ class SolidLike:
         d = Diagram(sample_time=self.timing.sample_time)
         sense_inertia(d, plant, self.timing, frequency=self.sensor_frequency)
         for wheelset in WHEELSETS:
-            self._speed_loop(d, plant, motors, wheelset, track)
+            self._speed_error(d, plant, wheelset, track)
+        for wheelset in WHEELSETS:
+            self._speed_loop(d, plant, motors, wheelset)
             self._yaw_moment_loop(d, plant, wheelset, track)
         return d.spec()
 
@@ -111,12 +118,16 @@ class SolidLike:
         coupling = self.coupling * min(1.0, self.coupling_speed / speed)
         return coupling * self.contact.longitudinal_creep * plant.radius**2 / max(speed, self.slow_speed)
 
-    def _speed_loop(self, d: Diagram, plant: Plant, motors: Motors, w: Wheelset, track: Track) -> None:
-        """u = K(s) (lambda V rho/r0 - wd), with the back-EMF of the commanded difference added where there is one."""
-        ts = self.timing.sample_time
+    def _speed_error(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
+        """lambda V rho/r0 - wd [rad/s]"""
         rho = database_curvature(d, f"{w.name}.rho.here", track, d.measure(f"{w.name}.s"))
         turn = d.product(f"{w.name}.turn", rho, d.measure(SPEED))
-        error = d.sum(f"{w.name}.wd.error", {turn: plant.speed_ratio, speed_difference(d, w, self.timing): -1.0})
+        d.sum(f"{w.name}.wd.error", {turn: plant.speed_ratio, speed_difference(d, w, self.timing): -1.0})
+
+    def _speed_loop(self, d: Diagram, plant: Plant, motors: Motors, w: Wheelset) -> None:
+        """u = K(s) (lambda V rho/r0 - wd) of the pair, plus the back-EMF of the commanded difference."""
+        ts = self.timing.sample_time
+        error = pair_feedback(d, w, "wd.shared", "wd.error", common=self.common_share, opposed=1.0)
         shape = [notch(self.notch_frequency, depth=self.notch_depth, width=self.notch_width, sample_time=ts)]
         if motors.lag > 0.0:
             shape.insert(0, lead(motors.lag, self.lead_pole, sample_time=ts))
@@ -127,7 +138,7 @@ class SolidLike:
         limit = motors.steering_max
         feedback = d.pi(f"{w.name}.u.feedback", shaped, proportional=proportional, integral=integral, limit=limit)
         back_emf = motors.per_speed(d, w.name, plant.speed_ratio)
-        command_motors(d, motors, w.name, d.sum(f"{w.name}.u", {feedback: 1.0, turn: back_emf}))
+        command_motors(d, motors, w.name, d.sum(f"{w.name}.u", {feedback: 1.0, f"{w.name}.turn": back_emf}))
 
     def _yaw_moment_loop(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
         """Integral control of the total yaw moment on the wheelset to what its spin needs, around the feedforward."""

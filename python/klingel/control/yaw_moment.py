@@ -34,7 +34,8 @@ class YawMoment:
     yaw_frequency: crossover of the loop [Hz], below the hunting of 2 to 8 Hz, where the springs must stay stiff.
     yaw_speed: running speed below which the crossover falls with it [m/s].
     yaw_share: of the largest moment of the actuators that the feedback may use.
-    sensor_frequency: low-pass of the inertial sensors [Hz], above the body's own modes near 1 Hz.
+    sensor_frequency: low-pass of the inertial sensors [Hz]: what they tell of the hunting of the bogies, 2 Hz, comes
+        back as a moment of the stiff springs; with 1.4 Hz it grows in an arc of 800 m.
     timing: sampling and delays. contact: what the design assumes of wheel and rail.
 
     >>> from klingel import library
@@ -47,7 +48,7 @@ class YawMoment:
     yaw_frequency: float = 0.7
     yaw_speed: float = 28.0
     yaw_share: float = 0.3
-    sensor_frequency: float = 2.0
+    sensor_frequency: float = 0.5
     timing: Timing = field(default_factory=Timing)
     contact: ContactDesign = field(default_factory=ContactDesign)
 

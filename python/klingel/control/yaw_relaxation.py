@@ -35,7 +35,7 @@ class YawRelaxation:
     ['bogie1.wheelset1.actuator_left.stroke', 'bogie1.wheelset1.actuator_right.stroke']
     """
 
-    relaxation: float = 0.9
+    relaxation: float = 0.95
     frequency: float = 0.5
     timing: Timing = field(default_factory=Timing)
 
@@ -58,7 +58,7 @@ class YawRelaxation:
         d = Diagram(sample_time=self.timing.sample_time)
         section = low_pass(self.frequency, sample_time=self.timing.sample_time)
         for w in WHEELSETS:
-            yaw = relative_yaw(d, f"{w.name}.actuator", plant.steering, self.timing)
+            yaw = relative_yaw(d, f"{w.name}.actuator", plant.actuators, self.timing)
             slow = d.filter(f"{w.name}.actuator.yaw.slow", yaw, [section])
             steer(d, plant, w, {slow: self.relaxation * plant.geometry.yaw_stiffness}, self.timing)
         return d.spec()

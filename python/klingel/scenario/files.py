@@ -27,6 +27,11 @@ STRATEGIES: dict[str, type[Any]] = {
     "solid_like": control.SolidLike,
     "irw_like": control.IRWLike,
     "yaw_moment": control.YawMoment,
+    "yaw_relaxation": control.YawRelaxation,
+    "lateral_feedback": control.LateralFeedback,
+    "secondary_yaw": control.SecondaryYaw,
+    "torque_vectoring": control.TorqueVectoring,
+    "feedforward": control.Feedforward,
 }
 """Names of strategies in files."""
 
@@ -47,6 +52,8 @@ UNITS = {
     "load": "N",
     "rate": "N m/s",
     "reach": "m",
+    "damping": "N m s/rad",
+    "max": "N m",
 }
 """SI units of a strategy's parameters by the last word of their names; all others are pure numbers."""
 

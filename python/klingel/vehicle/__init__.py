@@ -75,7 +75,8 @@ class Vehicle(Record):
         Errors: InputError with every problem, naming file, key, value and remedy.
         """
         folder = Path(path).parent
-        return validated(cls, resolved(read_toml(path), lambda file: read_toml(folder / file)), file=str(path))
+        tables = resolved(read_toml(path), lambda base: read_toml(folder / base), file=str(path))
+        return validated(cls, tables, file=str(path))
 
     @classmethod
     def from_tables(cls, tables: dict[str, Any], *, file: str | None = None) -> Self:

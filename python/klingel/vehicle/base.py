@@ -11,7 +11,7 @@ from klingel.errors import InputError, nearest
 Tables = Mapping[str, Any]
 
 
-def resolved(tables: Tables, read: Callable[[str], Tables]) -> dict[str, Any]:
+def resolved(tables: Tables, read: Callable[[str], Tables], *, file: str | None = None) -> dict[str, Any]:
     """The tables of a file with those of its `base` under them; `read` gives the tables of a file beside it.
 
     `without` lists tables of the base that the variant does not have; `[sources]` are added to those of the base.
@@ -27,10 +27,11 @@ def resolved(tables: Tables, read: Callable[[str], Tables]) -> dict[str, Any]:
     base = read(tables["base"])
     if "base" in base:
         remedy = f"name {base['base']} in its place, and give all tables that differ"
-        raise InputError.single("base", tables["base"], "has a base itself", remedy=remedy)
+        raise InputError.single("base", tables["base"], "has a base itself", remedy=remedy, file=file)
     without = tables.get("without", [])
     for key in without:
         if key not in base:
-            raise InputError.single("without", key, f"is not in {tables['base']}", remedy=nearest(key, list(base)))
+            message, remedy = f"is not in {tables['base']}", nearest(key, list(base))
+            raise InputError.single("without", key, message, remedy=remedy, file=file)
     sources = {**base.get("sources", {}), **own.get("sources", {})}
     return {key: value for key, value in base.items() if key not in without} | own | {"sources": sources}
