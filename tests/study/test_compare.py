@@ -19,7 +19,8 @@ from klingel.assess import COLUMNS
 from klingel.errors import InputError, RunCancelledError
 from klingel.plot.style import LOOKS, SPARE, looks_of
 from klingel.study.compare import compare, history_case
-from klingel.study.compare_cases import contenders, curves, made_for
+from klingel.study.compare_cases import contenders, made_for
+from klingel.study.compare_curves import curves
 from klingel.track.cases import perez2004
 
 QUIET = Console(quiet=True)

@@ -15,7 +15,7 @@ from klingel.assess import Assessment, curving
 from klingel.plot.style import looks_of
 from klingel.study import compare_output as output
 from klingel.study.compare_cases import contenders, slug
-from klingel.study.compare_cases import curves as cases_of
+from klingel.study.compare_curves import curves as cases_of
 from klingel.study.compare_straight import Straight, on_straight
 from klingel.study.folder import History, history_of, study_folder
 from klingel.study.perez2004 import HISTORY_RADIUS
