@@ -19,7 +19,8 @@ from klingel.assess import COLUMNS
 from klingel.errors import InputError, RunCancelledError
 from klingel.plot.style import LOOKS, SPARE, looks_of
 from klingel.study.compare import compare, history_case
-from klingel.study.compare_cases import contenders, curves, made_for
+from klingel.study.compare_cases import contenders, made_for
+from klingel.study.compare_curves import curves
 from klingel.track.cases import perez2004
 
 QUIET = Console(quiet=True)
@@ -186,7 +187,7 @@ def test_everything_is_written_and_a_failure_is_a_row(simulated, mine, tmp_path)
     )
     assert sorted(p.name for p in out.iterdir()) == sorted(
         [f"fig{i}.{form}" for i in range(15, 20) for form in ("svg", "png")]
-        + ["report.html", "runs", "summary.csv", "straight.csv"]
+        + ["report.html", "runs", "summary.csv", "straight.csv", "margins.csv"]
     )
     assert {p.name for p in (out / "runs").iterdir()} == {
         f"{name}_{curve}.nc" for name in ("passive", "S", "mine") for curve in ("R800", "R2000")
@@ -243,6 +244,8 @@ def test_a_small_comparison_through_the_core(undrawn, tmp_path):
     assert done.table["y_max_mm"].notna().all()
     assert set(done.straight["stable"]) == {"yes"}
     assert (done.straight["damping"] > 0.02).all()
+    assert set(done.margins["kind"]) == {"steering", "motors"}
+    assert done.margins["gain_margin"].between(1.2, 100.0).all()
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "http" not in page.replace("http://www.w3.org", "")
     assert "2 strategies in 2 curves" in page

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 File = Annotated[Path | None, typer.Argument(help="Scenario file (TOML); or give --vehicle and --speed.")]
 Vehicle = Annotated[str | None, typer.Option(help="Of the library, or a vehicle file.")]
 Speed = Annotated[str | None, typer.Option(help="Such as '160 km/h'; with a file, instead of its own.")]
-Control = Annotated[str | None, typer.Option(help="passive, solid_like or irw_like.")]
+Control = Annotated[str | None, typer.Option(help="A strategy such as irw_like, or file.py:Name.")]
 Setting = Annotated[
     list[str] | None, typer.Option("--set", help="A number, such as conicity=0.2 or vehicle.body.mass='30 t'.")
 ]

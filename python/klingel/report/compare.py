@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from klingel.report.columns import HEADINGS as OF_ASSESSMENT
 from klingel.report.columns import Heading, cell
@@ -66,6 +66,7 @@ class ComparePage:
         curves: that they ran through.
         table: `strategy`, `curve` and the columns of `klingel.assess.COLUMNS`.
         straight: `strategy`, `speed_kmh`, `stable`, `growth_per_s`, `damping`, `frequency_Hz`, `mode`.
+        margins: `strategy`, `speed_kmh`, `kind`, `gain_margin`, `phase_margin_deg`, `delay_margin_ms`.
         figures: `fig15` ... to the bytes of an SVG file.
         captions: of the figures, by the same names.
         failed: runs without figures, with the reason.
@@ -76,6 +77,7 @@ class ComparePage:
     curves: Sequence[Curve]
     table: pd.DataFrame
     straight: pd.DataFrame
+    margins: pd.DataFrame
     figures: Mapping[str, bytes]
     captions: Mapping[str, str]
     failed: Mapping[str, str]
@@ -100,6 +102,7 @@ def compare_report(page: ComparePage) -> Report:
             notes=notes(page.table),
             straight_heads=heads,
             straight_rows=straight,
+            margin_rows=margin_cells(page.margins, list(dict.fromkeys(page.straight["speed_kmh"]))),
             unknown=unknown(page.straight),
             figures={name: inline_svg(svg, name) for name, svg in page.figures.items()},
             vehicles=list(vehicles.values()),
@@ -131,6 +134,23 @@ def _damping(rows: pd.DataFrame) -> str:
         return swings
     grows = f"grows by {float(rows['growth_per_s'].iloc[0]):.2g} 1/s"
     return f"unstable, {rows['mode'].iloc[0]}: {swings if frequency > 0.0 else grows}"
+
+
+def margin_cells(margins: pd.DataFrame, speeds: Sequence[float]) -> list[list[str]]:
+    """Least margins as rows of text: strategy, kind of loop, then gain, phase and delay at every speed [km/h]."""
+    rows = []
+    for (name, kind), each in margins.groupby(["strategy", "kind"], sort=False):
+        found = {row["speed_kmh"]: row for row in each.to_dict("records")}
+        rows.append([str(name), str(kind), *(_margins(found.get(speed)) for speed in speeds)])
+    return rows
+
+
+def _margins(row: Mapping[Hashable, Any] | None) -> str:
+    if row is None:
+        return "–"
+    gain, phase, delay = (float(row[key]) for key in ("gain_margin", "phase_margin_deg", "delay_margin_ms"))
+    parts = ((gain, f"× {gain:.2f}"), (phase, f"{phase:.0f}°"), (delay, f"{delay:.0f} ms"))
+    return ", ".join("any" if math.isinf(value) else text for value, text in parts)
 
 
 def notes(table: pd.DataFrame) -> dict[str, list[str]]:

@@ -15,8 +15,8 @@ from klingel.assess import Assessment, curving
 from klingel.plot.style import looks_of
 from klingel.study import compare_output as output
 from klingel.study.compare_cases import contenders, slug
-from klingel.study.compare_cases import curves as cases_of
-from klingel.study.compare_straight import Row, on_straight
+from klingel.study.compare_curves import curves as cases_of
+from klingel.study.compare_straight import Straight, on_straight
 from klingel.study.folder import History, history_of, study_folder
 from klingel.study.perez2004 import HISTORY_RADIUS
 from klingel.study.runner import Batch, run_all
@@ -50,6 +50,7 @@ class Comparison:
         table: one row a strategy and curve: `strategy`, `curve` and the columns of `klingel.assess.COLUMNS`; a run that
             could not be made has its reason as `outcome` and no figures.
         straight: stability on straight track, one row a strategy and speed (`klingel.study.compare_straight`).
+        margins: of the loops on straight track, one row a strategy, speed and kind of loop (same place).
         failed: run to the reason why it has no figures.
         elapsed: wall time of it all [s].
     """
@@ -57,6 +58,7 @@ class Comparison:
     out: Path
     table: pd.DataFrame
     straight: pd.DataFrame
+    margins: pd.DataFrame
     failed: Mapping[str, str] = field(default_factory=dict)
     elapsed: float = 0.0
 
@@ -73,8 +75,8 @@ def compare(
 ) -> Comparison:
     """Run every strategy through every curve, and write and print how they compare.
 
-    Writes `summary.csv`, `straight.csv`, `fig15` to `fig19` as SVG and PNG, `report.html`, and `runs/<run>.nc` for
-    every run; each file whole or not at all.
+    Writes `summary.csv`, `straight.csv`, `margins.csv`, `fig15` to `fig19` as SVG and PNG, `report.html`, and
+    `runs/<run>.nc` for every run; each file whole or not at all.
 
     Args:
         strategies: name to a Strategy, None for no control, a Scenario (its track and speed are replaced) or a text; or
@@ -111,7 +113,7 @@ def compare(
     straights = {f"{slug(c.name)}, straight track": c for c in compared}
     shown = history_case(cases)
 
-    def work(task: str, progress: Progress) -> Finished | list[Row]:
+    def work(task: str, progress: Progress) -> Finished | Straight:
         if task in straights:
             return on_straight(straights[task], sorted({case.speed for case in cases}))
         contender, case = runs[task]
@@ -121,23 +123,23 @@ def compare(
         return Finished(assessment, history_of(series) if case is shown else None)
 
     prepare({c.name: c.scenario for c in compared}, screen)
-    batch: Batch[Finished | list[Row]] = run_all([*runs, *straights], work, result.progress, jobs=jobs, console=screen)
+    batch: Batch[Finished | Straight] = run_all([*runs, *straights], work, result.progress, jobs=jobs, console=screen)
     table = output.comparison([(*runs[task], *_came_out(batch, task)) for task in runs])
-    found = [rows for task in straights if isinstance(rows := batch.done.get(task), list)]
-    straight = output.stability([row for rows in found for row in rows])
+    found = [each for task in straights if isinstance(each := batch.done.get(task), Straight)]
+    straight, margins = output.stability(found), output.margins(found)
     histories = {
         runs[task][0].name: done.history
         for task, done in batch.done.items()
         if isinstance(done, Finished) and done.history is not None
     }
     failed = {task: reason for task, reason in batch.failed.items() if task in runs}
-    output.write(folder, compared, cases, table, straight, histories, failed)
+    output.write(folder, compared, cases, output.Tables(table, straight, margins), histories, failed)
     elapsed = time.perf_counter() - started
     output.show(screen, table, straight, folder, elapsed)
     if batch.interrupted:
         made = len(runs) - len(failed)
         raise KeyboardInterrupt(f"{made} of {len(runs)} runs are kept in {folder}")
-    return Comparison(folder, table, straight, failed, elapsed)
+    return Comparison(folder, table, straight, margins, failed, elapsed)
 
 
 def history_case(cases: list[Case]) -> Case:
@@ -146,7 +148,7 @@ def history_case(cases: list[Case]) -> Case:
     return wanted[0] if wanted else cases[len(cases) // 2]
 
 
-def _came_out(batch: Batch[Finished | list[Row]], task: str) -> tuple[Assessment | None, str]:
+def _came_out(batch: Batch[Finished | Straight], task: str) -> tuple[Assessment | None, str]:
     """The figures of a run, or the reason why there are none."""
     done = batch.done.get(task)
     return (done.assessment, "") if isinstance(done, Finished) else (None, batch.failed[task])

@@ -1,10 +1,11 @@
-"""What a comparison leaves behind: two tables as CSV, figures as SVG and PNG, one page, tables on the screen.
+"""What a comparison leaves behind: three tables as CSV, figures as SVG and PNG, one page, tables on the screen.
 Every file is written whole or not at all; the same results give the same bytes, measured run times apart."""
 
 from __future__ import annotations
 
 import statistics
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,7 @@ from klingel.assess import COLUMNS, Assessment
 from klingel.plot.style import looks_of
 from klingel.report.compare import HEADINGS, ComparePage, Curve, Entry, compare_report, straight_cells
 from klingel.study.compare_straight import COLUMNS as STRAIGHT_COLUMNS
-from klingel.study.compare_straight import Row
+from klingel.study.compare_straight import MARGINS, Row, Straight
 from klingel.study.folder import History, write_curving_figures, write_table
 from klingel.study.screen import WORDS, print_runs
 
@@ -69,32 +70,46 @@ def comparison(rows: Iterable[tuple[Contender, Case, Assessment | None, str]]) -
     return pd.DataFrame(records, columns=["strategy", "curve", *COLUMNS])
 
 
-def stability(rows: Sequence[Row]) -> pd.DataFrame:
-    """The rows of all strategies on straight track."""
-    return pd.DataFrame(rows, columns=list(STRAIGHT_COLUMNS))
+@dataclass(frozen=True)
+class Tables:
+    """runs: one row a strategy and curve; straight, margins: stability and margins on straight track."""
+
+    runs: pd.DataFrame
+    straight: pd.DataFrame
+    margins: pd.DataFrame
+
+
+def stability(found: Iterable[Straight]) -> pd.DataFrame:
+    """The least damped modes of all strategies on straight track."""
+    return pd.DataFrame([row for each in found for row in each.stability], columns=list(STRAIGHT_COLUMNS))
+
+
+def margins(found: Iterable[Straight]) -> pd.DataFrame:
+    """The least margins of all strategies on straight track."""
+    return pd.DataFrame([row for each in found for row in each.margins], columns=list(MARGINS))
 
 
 def write(
     folder: Path,
     contenders: Sequence[Contender],
     cases: Sequence[Case],
-    table: pd.DataFrame,
-    straight: pd.DataFrame,
+    tables: Tables,
     histories: Mapping[str, History],
     failed: Mapping[str, str],
 ) -> None:
-    """`summary.csv`, `straight.csv`, the figures and `report.html`."""
-    write_table(folder / "summary.csv", table)
-    write_table(folder / "straight.csv", straight)
+    """`summary.csv`, `straight.csv`, `margins.csv`, the figures and `report.html`."""
+    for name, table in (("summary", tables.runs), ("straight", tables.straight), ("margins", tables.margins)):
+        write_table(folder / f"{name}.csv", table)
     looks = looks_of({c.name: c.label for c in contenders})
     ordered = {c.name: histories[c.name] for c in contenders if c.name in histories}
-    drawn = table[table["y_max_mm"].notna()]
+    drawn = tables.runs[tables.runs["y_max_mm"].notna()]
     figures = write_curving_figures(folder, drawn, ordered, looks=looks, by="strategy", apart=far_out(ordered))
     page = ComparePage(
         entries=[Entry(c.name, looks[c.name].label, c.scenario) for c in contenders],
         curves=[Curve(case.track, case.radius, case.speed) for case in cases],
-        table=table,
-        straight=straight,
+        table=tables.runs,
+        straight=tables.straight,
+        margins=tables.margins,
         figures=figures,
         captions=CAPTIONS,
         failed=failed,
