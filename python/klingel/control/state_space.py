@@ -42,8 +42,8 @@ class Split(NamedTuple):
 def split(A: Matrix, B: Matrix, C: Matrix, D: Matrix) -> Split:
     """Splits off the poles at z = 1.
 
-    The states, scaled until A is balanced, are (V, U) times new ones: V the null space of A - 1, where nothing changes by
-    itself, and U its range.
+    The states, scaled until A is balanced, are (V, U) times new ones: V the null space of A - 1, where nothing changes
+    by itself, and U its range.
     Errors: InputError for integrators of integrals, where V and U have a direction in common.
 
     >>> A, B, C, D = (np.array(m, dtype=float) for m in ([[1, 0.5], [0, 0.5]], [[0], [1]], [[1, 0]], [[0]]))
