@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import itertools
 import re
+import sys
 import time
 from pathlib import Path
 
@@ -56,7 +57,7 @@ def undrawn(monkeypatch):
 
 @pytest.fixture
 def mine(tmp_path: Path) -> Path:
-    path = tmp_path / "mine.py"
+    path = tmp_path / "mine_of_this_test.py"
     path.write_text(MINE)
     return path
 
@@ -125,6 +126,14 @@ def test_the_vehicle_is_the_first_that_a_strategy_fits() -> None:
 def test_bad_strategies_are_refused_before_anything_runs(mine: Path, texts: list[str], said: str) -> None:
     with pytest.raises(InputError, match=re.escape(said)):
         contenders([text.format(mine) for text in texts], FIRST)
+
+
+def test_a_file_imports_its_neighbours(mine: Path, tmp_path: Path) -> None:
+    neighbour = tmp_path / "neighbour.py"
+    neighbour.write_text(f"from {mine.stem} import Mine\n")
+    (made,) = contenders([f"{neighbour}:Mine"], FIRST)
+    assert made.scenario.control.frequency == 1.0
+    assert str(tmp_path) not in sys.path
 
 
 def test_a_file_that_fails_and_a_class_that_cannot_be_made_are_said(tmp_path: Path) -> None:

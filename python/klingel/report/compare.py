@@ -98,7 +98,7 @@ def compare_report(page: ComparePage) -> Report:
             headings={name: HEADINGS[name] for name in SHOWN},
             definitions_of=HEADINGS,
             words=WORDS,
-            rows=[{name: cell(name, row[name]) for name in SHOWN} for row in page.table.to_dict("records")],
+            rows=[{name: shown(name, row[name]) for name in SHOWN} for row in page.table.to_dict("records")],
             notes=notes(page.table),
             straight_heads=heads,
             straight_rows=straight,
@@ -132,8 +132,7 @@ def _damping(rows: pd.DataFrame) -> str:
     swings = f"{100.0 * damping:.1f} % at {frequency:.2f} Hz"
     if damping >= 0.0:
         return swings
-    grows = f"grows by {float(rows['growth_per_s'].iloc[0]):.2g} 1/s"
-    return f"unstable, {rows['mode'].iloc[0]}: {swings if frequency > 0.0 else grows}"
+    return f"unstable: {swings}" if frequency > 0.0 else f"unstable: grows by {rows['growth_per_s'].iloc[0]:.2g} 1/s"
 
 
 def margin_cells(margins: pd.DataFrame, speeds: Sequence[float]) -> list[list[str]]:
@@ -188,6 +187,15 @@ def _entry(entry: Entry) -> dict[str, str]:
         "contact": f"{scenario.contact}, creep forces {scenario.creep_law}",
         "step": f"{1e3 * scenario.step:g} ms",
     }
+
+
+def shown(column: str, value: object) -> str:
+    """One value of the table as text; the reason for a missing run stands elsewhere.
+
+    >>> shown("outcome", "no run: it failed"), shown("y_max_mm", 1.234)
+    ('no run', '1.23')
+    """
+    return "no run" if str(value).startswith("no run") else cell(column, value)
 
 
 def parted(rows: Sequence[Mapping[str, str]]) -> tuple[list[dict[str, str]], dict[str, str]]:

@@ -68,17 +68,23 @@ def made(kind: Any, name: str, values: dict[str, Any]) -> Any:
 
 
 def _run(path: Path, name: str) -> Any:
-    """The module of a file; dataclasses look their module up while it runs, so it has a place among all others."""
+    """The module of a file, run as a script is: with its folder as the first to import from.
+
+    Dataclasses look their module up while it runs, so it has a place among all others.
+    """
     key = f"klingel_own_{path.stem}_{hashlib.sha256(str(path).encode()).hexdigest()[:12]}"
     spec = importlib.util.spec_from_file_location(key, path)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[key] = module
+    sys.path.insert(0, str(path.parent))
     try:
         spec.loader.exec_module(module)
     except Exception as error:  # whatever a user's file does when it is run
         del sys.modules[key]
         message = f"fails when run: {type(error).__name__}: {error}"
         raise InputError.single("control.strategy", name, message, remedy=f"mend {path}") from error
+    finally:
+        sys.path.remove(str(path.parent))
     return module

@@ -18,7 +18,7 @@ from rich.table import Table
 import klingel
 from klingel.assess import COLUMNS, Assessment
 from klingel.plot.style import looks_of
-from klingel.report.compare import HEADINGS, ComparePage, Curve, Entry, compare_report, straight_cells
+from klingel.report.compare import HEADINGS, ComparePage, Curve, Entry, compare_report, shown, straight_cells
 from klingel.study.compare_straight import COLUMNS as STRAIGHT_COLUMNS
 from klingel.study.compare_straight import MARGINS, Row, Straight
 from klingel.study.folder import History, write_curving_figures, write_table
@@ -130,6 +130,7 @@ def far_out(histories: Mapping[str, History]) -> set[str]:
 
 def show(screen: Console, table: pd.DataFrame, straight: pd.DataFrame, folder: Path, elapsed: float) -> None:
     """Print both tables."""
+    table = table.assign(outcome=[shown("outcome", outcome) for outcome in table["outcome"]])
     print_runs(screen, table, "Comparison", SHOWN, headings=HEADINGS, words=("strategy", "curve", *WORDS))
     rows, heads = straight_cells(straight)
     made = Table(title="Least damping on straight track", title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
