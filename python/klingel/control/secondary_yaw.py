@@ -25,7 +25,7 @@ class SecondaryYaw:
     """M = -c(V) HP(r_bogie - r_body) + k kpsi LP(psi), the yaw moment on each bogie; psi is its yaw against the body.
 
     damping: c of a bogie at `damping_speed` and above [N m s/rad]; as two yaw dampers of 200 kN s/m at 1.3 m.
-    damping_speed: running speed up to which c grows with it [m/s]: bogies hunt at speed, and at 10 m/s all of c would make
+    damping_speed: running speed up to which c grows with it [m/s]: bogies hunt at speed; at 10 m/s all of c would make
         them swing on their primary springs at 35 Hz.
     damping_frequency: corner of the high-pass [Hz]: transitions are slow, hunting is not.
     relief: k, of the yaw moment of the secondary springs kpsi that is taken away; above 1 it turns the
