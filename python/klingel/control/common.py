@@ -142,7 +142,7 @@ def sense_curve(
     """
     ts = timing.sample_time
     per_error = -(plant.radius**2) / (contact.conicity * 2.0 * plant.geometry.half_wheelbase)
-    gain = scheduled(d, "bogie_yaw.gain", lambda v: per_error * min(1.0, v / slow_speed) ** 2 / v)
+    gain = scheduled(d, "bogie_yaw.gain", lambda v: per_error * min(1.0, v / slow_speed) / v)
     minus = d.sum("bogie_yaw.minus", {gain: -1.0})
     for bogie in ("bogie1", "bogie2"):
         first, second = (f"{bogie}.wheelset{i}.wd.error" for i in (1, 2))

@@ -88,12 +88,12 @@ class IRWLike:
     frequency: float = 1.1
     turn_frequency: float = 2.0
     centring: float = 0.06
-    slow_speed: float = 24.0
+    slow_speed: float = 26.0
     integral_time: float = 0.6
     reach: float = 4e-3
     integral_share: float = 0.1
     current_frequency: float = 12.0
-    gyro_share: float = 0.7
+    gyro_share: float = 0.6
     gyro_frequency: float = 1.5
     extrapolation: float = 0.5
     roll_frequency: float = 20.0

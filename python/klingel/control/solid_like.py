@@ -64,8 +64,8 @@ class SolidLike:
 
     coupling: float = 0.36
     coupling_speed: float = 56.0
-    common_share: float = 0.2
-    slow_speed: float = 18.0
+    common_share: float = 0.15
+    slow_speed: float = 26.0
     integral_time: float = 5.0
     lead_pole: float = 0.002
     notch_frequency: float = 55.0
