@@ -136,12 +136,17 @@ def test_free_wheels_run_to_the_flange() -> None:
 
 @pytest.mark.parametrize("radius", CASES)
 def test_trailed_wheels_are_steered_as_well_as_driven_ones(radius: int) -> None:
-    """In the arc: attack angles and wear within 2 % of the largest; what differs is the pull of the motors."""
+    """In the arc: largest attack angle and lateral force and mean wear within 2 %; what differs is the motors' pull."""
     driven = in_arc(control.IRWLike, "mechatronic_irw", radius)
     trailed = in_arc(control.TrailedIRW, "trailed_irw", radius)
-    for quantity in ("yaw", "left.tgamma", "right.tgamma", "left.Y", "right.Y"):
-        one, other = (np.array([v[f"{w.name}.{quantity}"] for w in WHEELSETS]) for v in (driven, trailed))
-        assert np.abs(one - other).max() < 0.03 * np.abs(one).max(), quantity
+
+    def figures(values: Any) -> list[float]:
+        yaw = max(abs(values[f"{w.name}.yaw"]) for w in WHEELSETS)
+        force = max(abs(values[f"{w.name}.left.Y"] + values[f"{w.name}.right.Y"]) for w in WHEELSETS)
+        wear = sum(values[f"{w.name}.{side}.tgamma"] for w in WHEELSETS for side in ("left", "right"))
+        return [yaw, force, wear]
+
+    assert figures(driven) == pytest.approx(figures(trailed), rel=0.02)
     assert max(abs(v[f"{w.name}.y"]) for v in (driven, trailed) for w in WHEELSETS) < 0.2e-3
 
 
