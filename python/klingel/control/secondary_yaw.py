@@ -27,7 +27,8 @@ class SecondaryYaw:
     damping: c of a bogie at `damping_speed` and above [N m s/rad]; as two yaw dampers of 200 kN s/m at 1.3 m.
     damping_speed: running speed up to which c grows with it [m/s]: bogies hunt at speed; at 10 m/s all of c would make
         them swing on their primary springs at 35 Hz.
-    damping_frequency: corner of the high-pass [Hz]: transitions are slow, hunting is not.
+    damping_frequency: corner of the high-pass [Hz]: transitions are slower than hunting; its lead costs
+        damping near 2 Hz.
     relief: k, of the yaw moment of the secondary springs kpsi that is taken away; above 1 it turns the
         bogie further in.
     relief_frequency: corner of the low-pass of the strokes [Hz]: above it the springs stay as they are.
@@ -42,7 +43,7 @@ class SecondaryYaw:
 
     damping: float = 676e3
     damping_speed: float = 50.0
-    damping_frequency: float = 0.3
+    damping_frequency: float = 0.1
     relief: float = 1.0
     relief_frequency: float = 0.3
     timing: Timing = field(default_factory=Timing)
