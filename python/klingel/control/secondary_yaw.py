@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from klingel.control.basics import Timing, check_positive
+from klingel.control.basics import Timing, check_positive, scheduled
 from klingel.control.diagram import Diagram
 from klingel.control.discrete import high_pass, low_pass
 from klingel.control.feedforward import SteeringGeometry
@@ -22,10 +22,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SecondaryYaw:
-    """M = -c HP(r_bogie - r_body) + k kpsi LP(psi), the yaw moment on each bogie; psi is its yaw against the body.
+    """M = -c(V) HP(r_bogie - r_body) + k kpsi LP(psi), the yaw moment on each bogie; psi is its yaw against the body.
 
-    damping: c of a bogie [N m s/rad]; as two yaw dampers of 200 kN s/m at 1.3 m.
-    damping_frequency: corner of the high-pass [Hz]: transitions are slow, hunting is not.
+    damping: c of a bogie at `damping_speed` and above [N m s/rad]; as two yaw dampers of 200 kN s/m at 1.3 m.
+    damping_speed: running speed up to which c grows with it [m/s]: bogies hunt at speed; at 10 m/s all of c would make
+        them swing on their primary springs at 35 Hz.
+    damping_frequency: corner of the high-pass [Hz]: transitions are slower than hunting; its lead costs
+        damping near 2 Hz.
     relief: k, of the yaw moment of the secondary springs kpsi that is taken away; above 1 it turns the
         bogie further in.
     relief_frequency: corner of the low-pass of the strokes [Hz]: above it the springs stay as they are.
@@ -39,13 +42,14 @@ class SecondaryYaw:
     """
 
     damping: float = 676e3
-    damping_frequency: float = 0.3
+    damping_speed: float = 50.0
+    damping_frequency: float = 0.1
     relief: float = 1.0
     relief_frequency: float = 0.3
     timing: Timing = field(default_factory=Timing)
 
     def __post_init__(self) -> None:
-        check_positive(self, ("damping", "damping_frequency", "relief", "relief_frequency"))
+        check_positive(self, ("damping", "damping_speed", "damping_frequency", "relief", "relief_frequency"))
 
     def problems(self, vehicle: Vehicle) -> Iterator[Problem]:
         """Why it does not fit a vehicle."""
@@ -63,6 +67,7 @@ class SecondaryYaw:
         stiffness = SteeringGeometry.of(vehicle).secondary_yaw
         ts = self.timing.sample_time
         d = Diagram(sample_time=ts)
+        damping = scheduled(d, "yaw.damping", lambda v: -self.damping * min(1.0, v / self.damping_speed))
         for bogie in ("bogie1", "bogie2"):
             rates = {d.measure(f"{bogie}.yaw_rate"): 1.0, d.measure("body.yaw_rate"): -1.0}
             rate = d.delay(f"{bogie}.turning", d.sum(f"{bogie}.turning.now", rates), self.timing.sensor_samples)
@@ -70,7 +75,7 @@ class SecondaryYaw:
             # the actuators push the body against the bogie: their yaw is that of the body
             yaw = relative_yaw(d, f"{bogie}.yaw_actuator", actuator, self.timing)
             slow = d.filter(f"{bogie}.yaw.slow", yaw, [low_pass(self.relief_frequency, sample_time=ts)])
-            moment = d.sum(f"{bogie}.M", {quick: -self.damping, slow: -self.relief * stiffness})
+            moment = d.sum(f"{bogie}.M", {quick: damping, slow: -self.relief * stiffness})
             limited = d.saturation(f"{bogie}.M.limited", moment, -actuator.moment_max, actuator.moment_max)
             sent = d.delay(f"{bogie}.M.sent", limited, self.timing.computation_samples)
             for side, sign in (("left", -1.0), ("right", 1.0)):

@@ -157,7 +157,7 @@ def block(state: str) -> str:
     ('gyro slow', 'force put out')
     """
     words = state.removeprefix("control.").split(".")
-    of_vehicle = re.compile(r"(bogie|wheelset)\d|body|left|right|actuator_.*|now|\d+")
+    of_vehicle = re.compile(r"(bogie|wheelset)\d|body|left|right|(yaw_)?actuator_.*|now|\d+")
     return " ".join(word.replace("_", " ") for word in words if not of_vehicle.fullmatch(word)) or state
 
 
