@@ -76,8 +76,8 @@ PAIRS = (
     ProfilePair(wear=0.8e-3),
     ProfilePair(wear=1.0e-3),
 )
-"""By rising conicity. Gauges stay within 2 mm of 1435 mm, so that wheelsets reach the flange root at much the same place:
-S1002 also has 0.06 at 1440 mm and 0.42 at 1430 mm. At 1:20 its conicity is 0.01."""
+"""By rising conicity. Gauges stay within 2 mm of 1435 mm, so that wheelsets reach the flange root at much the same
+place: S1002 also has 0.06 at 1440 mm and 0.42 at 1430 mm. At 1:20 its conicity is 0.01."""
 
 
 def conicity_of(scenario: Scenario) -> float:
