@@ -7,6 +7,7 @@ import _thread
 import math
 import re
 import textwrap
+import threading
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -73,6 +74,22 @@ def test_integrators_are_split_off_exactly() -> None:
     for z in (0.3 + 0.8j, -1.0, 1.001):
         apart = parts.c / (z - parts.a) @ parts.b + parts.c1 @ parts.b1 / (z - 1.0) + parts.d
         np.testing.assert_allclose(apart, C @ np.linalg.solve(z * np.eye(3) - A, B) + D, rtol=1e-9)
+
+
+def test_slow_poles_of_badly_scaled_states_are_no_integrators() -> None:
+    """Position in um, force in MN: entries of 1e9 beside a pole that decays over a day."""
+    scale = np.diag([1.0, 1e9, 1e-6])
+    A = scale @ np.array([[1.0 - 1e-8, 0.3, 0.0], [0.0, 0.5, 0.2], [0.0, -0.2, 0.6]]) @ np.linalg.inv(scale)
+    assert split(A, np.ones((3, 1)), np.ones((1, 3)), np.zeros((1, 1))).b1.shape == (0, 1)
+
+
+def test_what_cannot_be_copied_is_refused() -> None:
+    class Locked(Failing):
+        def __init__(self) -> None:
+            self.lock = threading.Lock()
+
+    with pytest.raises(InputError, match="cannot be copied for a run"):
+        kl.simulate(scenario(python(Locked()), 0.1))
 
 
 def test_a_chain_of_integrators_is_refused() -> None:

@@ -91,7 +91,8 @@ def robustness(
 def _scenario(file: Path | None, control: str | None, curve: str | None, vehicle: str | None, step: str) -> Scenario:
     """Of a file, or a strategy on its vehicle through a curve; errors: InputError."""
     from klingel.errors import InputError
-    from klingel.study.compare_cases import contenders, curves
+    from klingel.study.compare_cases import contenders
+    from klingel.study.compare_curves import curves
 
     if (file is None) == (control is None):
         given = None if file is None else str(file)

@@ -124,8 +124,17 @@ class PythonController:
         return d.spec()
 
     def externals(self) -> dict[str, Called]:
-        """A copy of the controller for one run, as the core calls it, by the name of its block."""
-        return {self.name: Called(copy.deepcopy(self.controller), tuple(self.measurements), self._outputs)}
+        """A copy of the controller for one run, as the core calls it, by the name of its block.
+
+        Errors: InputError for one that cannot be copied.
+        """
+        try:
+            own = copy.deepcopy(self.controller)
+        except Exception as error:  # whatever the parts of someone's object raise
+            message = f"cannot be copied for a run ({type(error).__name__}: {error})"
+            remedy = "make what it holds in reset(), or give it a __deepcopy__"
+            raise InputError.single("controller", self.name, message, remedy=remedy) from error
+        return {self.name: Called(own, tuple(self.measurements), self._outputs)}
 
 
 class Called:

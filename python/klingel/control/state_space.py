@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 Matrix = NDArray[np.float64]
 
 AT_ONE = 1e-9
-"""A pole this near to z = 1, relative to the largest entry of A - 1, is an integrator; one of 1 kHz that decays over
-days is told apart."""
+"""Singular values of A - 1, over the largest, that are nil: a pole of 1 kHz that decays in days is no integrator."""
 
 SKEW = 1e8
 """Condition number of the modes beyond which integrators hang together: a chain, not side by side."""
@@ -43,7 +42,8 @@ class Split(NamedTuple):
 def split(A: Matrix, B: Matrix, C: Matrix, D: Matrix) -> Split:
     """Splits off the poles at z = 1.
 
-    The states are (V, U) times new ones: V the null space of A - 1, where nothing changes by itself, and U its range.
+    The states, scaled until A is balanced, are (V, U) times new ones: V the null space of A - 1, where nothing changes
+    by itself, and U its range.
     Errors: InputError for integrators of integrals, where V and U have a direction in common.
 
     >>> A, B, C, D = (np.array(m, dtype=float) for m in ([[1, 0.5], [0, 0.5]], [[0], [1]], [[1, 0]], [[0]]))
@@ -51,18 +51,22 @@ def split(A: Matrix, B: Matrix, C: Matrix, D: Matrix) -> Split:
     >>> parts.a.round(9), (parts.c1 @ parts.b1).round(9)
     (array([[0.5]]), array([[1.]]))
     """
+    from scipy.linalg import matrix_balance
+
     n = len(A)
     if n == 0:
         return Split(A, B, C, D, np.zeros((0, B.shape[1])), np.zeros((len(C), 0)))
-    u, s, vt = np.linalg.svd(A - np.eye(n))
+    _, scale = matrix_balance(A, permute=False)
+    balanced, inputs, outputs = np.linalg.solve(scale, A @ scale), np.linalg.solve(scale, B), C @ scale
+    u, s, vt = np.linalg.svd(balanced - np.eye(n))
     rest = int((s > AT_ONE * max(float(s[0]), 1.0)).sum())
     basis = np.hstack([vt[rest:].T, u[:, :rest]])
     if np.linalg.cond(basis) > SKEW:
         remedy = "such a controller has no steady state to start from; give at most one integral of every signal"
         raise InputError.single("system", None, "has repeated poles at z = 1 in a chain", remedy=remedy)
     k = n - rest
-    a, b = np.linalg.solve(basis, A @ basis), np.linalg.solve(basis, B)
-    c = C @ basis
+    a, b = np.linalg.solve(basis, balanced @ basis), np.linalg.solve(basis, inputs)
+    c = outputs @ basis
     return Split(a[k:, k:], b[k:], c[:, k:], D, b[:k], c[:, :k])
 
 

@@ -14,7 +14,7 @@ from klingel.assess import curving
 from klingel.errors import InputError
 from klingel.study import errors_output as output
 from klingel.study.compare_cases import Contender, contenders, slug
-from klingel.study.compare_cases import curves as cases_of
+from klingel.study.compare_curves import curves as cases_of
 from klingel.study.folder import conclude, study_folder
 from klingel.study.robustness import recorded
 from klingel.study.robustness_effects import EFFECTS, changed
