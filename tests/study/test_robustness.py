@@ -320,6 +320,15 @@ def test_a_small_study_goes_on_and_repeats_to_the_byte(tmp_path: Path, monkeypat
     assert "http" not in page.replace("http://www.w3.org", "")
 
 
+def test_a_page_is_made_of_what_there_is_after_an_early_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuses(scenario: Scenario, **other: object) -> object:
+        raise SimulationError("no equilibrium")
+
+    monkeypatch.setattr(kl.result, "simulate", refuses)
+    robustness.run(passive(), tmp_path, runs=2, chosen=inputs(only=["friction"]), alone=False, console=quiet())
+    assert "2 of 2" in (tmp_path / "report.html").read_text()
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

@@ -98,10 +98,10 @@ def correlations(table: pd.DataFrame, chosen: Inputs, figures: tuple[str, ...] =
         **{figure: table[figure].to_numpy(dtype=np.float64) for figure in figures},
         FAILED: failed(table).astype(np.float64),
     }
-    rows = []
+    y_max, rows = table["y_max_mm"].to_numpy(dtype=np.float64), []
     for name, values in amounts(table, chosen).items():
         found = [rank_correlation(values, column) for column in columns.values()]
-        rows.append((name, *found, explained(values, columns["y_max_mm"])))
+        rows.append((name, *found, explained(values, y_max)))
     made = pd.DataFrame(rows, columns=["input", *columns, "explained"])
     return made.sort_values("explained", ascending=False, kind="stable", ignore_index=True)
 

@@ -135,23 +135,22 @@ def _often(made: Robustness, merits: tuple[str, ...]) -> Section:
     write_table(made.out / "probabilities.csv", chances)
     write_table(made.out / "percentiles.csv", spread)
     shown = [merit for merit in DISTINCT if merit in merits]
-    picture = _picture(
-        made,
-        "exceedance",
-        exceedance(
+    meanings = "; ".join(f"{HEADINGS[merit].name}: {HEADINGS[merit].meaning}" for merit in shown)
+    pictures: tuple[Picture, ...] = ()
+    if shown:
+        figure = exceedance(
             {heading(merit): made.drawn[merit].to_numpy(dtype=np.float64) for merit in shown},
             {heading(merit): limit for merit, limit in LIMITS.items()},
             title="How many runs reach a value",
-        ),
-        "Share of the drawn runs at or above each value. "
-        + "; ".join(f"{HEADINGS[m].name}: {HEADINGS[m].meaning}" for m in shown),
-    )
+        )
+        caption = f"Share of the drawn runs at or above each value. {meanings}."
+        pictures = (_picture(made, "exceedance", figure, caption),)
     tables = (
         Listed("How often, with the 95 % interval of Clopper and Pearson", shown_probabilities(chances)),
         Listed("Percentiles over the runs that have the figure", shown_percentiles(spread)),
     )
     words = "A run that ended early counts with what it reached; in the first line it counts as failed."
-    return Section("How often, how much", (words,), tables, (picture,))
+    return Section("How often, how much", (words,), tables, pictures)
 
 
 def shown_probabilities(chances: pd.DataFrame) -> pd.DataFrame:

@@ -1,4 +1,4 @@
-"""Pairs of wheel and rail profiles that give conicities from 0.05 to 0.4: new, coned and worn wheels, gauges, cants.
+"""Pairs of wheel and rail profiles that give conicities from 0.05 to 0.4: coned, new and worn wheels, rails, gauges.
 A study of robustness draws from this list, as a vehicle meets pairs and not numbers."""
 
 from __future__ import annotations
@@ -66,20 +66,18 @@ class ProfilePair:
 
 PAIRS = (
     ProfilePair(wheel="cone 1:20"),
-    ProfilePair(gauge=1.439),
-    ProfilePair(gauge=1.438),
-    ProfilePair(rail="54E1", gauge=1.438),
+    ProfilePair(wheel="cone 1:10"),
+    ProfilePair(gauge=1.437),
     ProfilePair(),
-    ProfilePair(gauge=1.433),
+    ProfilePair(rail="54E1"),
     ProfilePair(wear=0.3e-3),
-    ProfilePair(wear=1.0e-3, rail_inclination=1 / 20),
+    ProfilePair(wear=0.45e-3),
     ProfilePair(wear=0.6e-3),
-    ProfilePair(gauge=1.4305),
-    ProfilePair(wear=1.0e-3, gauge=1.437),
+    ProfilePair(wear=0.8e-3),
     ProfilePair(wear=1.0e-3),
 )
-"""By rising conicity under the library's vehicles: 0.051, 0.098, 0.123, 0.154, 0.175, 0.203, 0.237, 0.275, 0.299,
-0.335, 0.357, 0.398."""
+"""By rising conicity. Gauges stay within 2 mm of 1435 mm, so that wheelsets reach the flange root at much the same
+place: S1002 also has 0.06 at 1440 mm and 0.42 at 1430 mm. At 1:20 its conicity is 0.01."""
 
 
 def conicity_of(scenario: Scenario) -> float:
