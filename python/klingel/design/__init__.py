@@ -2,6 +2,7 @@
 Definitions and derivations: docs/theory/design.md."""
 
 from klingel.design.check import Check, check
+from klingel.design.compensator import Compensator, loop_shaping, lqg
 from klingel.design.limits import Limits, judged, limits
 from klingel.design.loops import Loop, loops
 from klingel.design.margins import Margins, margins, margins_of
@@ -9,6 +10,7 @@ from klingel.design.tune import Design, speed_loop, steering_loop, torque_loop, 
 
 __all__ = [
     "Check",
+    "Compensator",
     "Design",
     "Limits",
     "Loop",
@@ -16,7 +18,9 @@ __all__ = [
     "check",
     "judged",
     "limits",
+    "loop_shaping",
     "loops",
+    "lqg",
     "margins",
     "margins_of",
     "speed_loop",
