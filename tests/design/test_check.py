@@ -88,7 +88,7 @@ def test_limits_are_those_of_the_kind_of_loop() -> None:
     assert list(missed(good, MOTORS)) == []
     assert list(missed(good | {"stable": False}, MOTORS)) == ["unstable"]
     short = good | {"phase": 0.5, "delay": 4e-3}
-    assert list(missed(short, MOTORS)) == ["phase margin 29° of 45°", "delay margin 4.0 ms of 10 ms"]
+    assert list(missed(short, MOTORS)) == ["phase 29° of 45°", "delay 4.0 ms of 10 ms"]
     assert list(missed(good | {"gain": 1.9}, dataclasses.replace(MOTORS, gain=1.8))) == []
 
 

@@ -63,7 +63,6 @@ def test_the_page_tells_margins_and_failures(bench: Bench) -> None:
     assert "SolidLike fails at" in html
     assert html.count("<figure") == 5
     assert "http" not in html.replace("http://www.w3.org", "")
-    assert html == design_report(bench, title="S", subtitle="hard").html
 
 
 def test_margins_are_readable() -> None:

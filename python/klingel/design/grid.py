@@ -25,7 +25,7 @@ SHARP = 0.3
 ABOUT = (0.0, 0.3, 0.8, 2.0)
 """Distances from the frequency of such a pole, in its decay rate."""
 
-TURN = 0.12
+TURN = 0.08
 """Chordal distance of neighbours on the sphere of L (of diameter 1) above which another one goes between."""
 
 ROUNDS = 6

@@ -57,17 +57,17 @@ def missed(row: Mapping[Any, Any], wanted: Limits) -> Iterator[str]:
     """What a row of `klingel.design.margins` falls short of, in words; nothing where it keeps the limits.
 
     >>> list(missed({"stable": True, "gain": 1.5, "phase": 1.0, "delay": 0.1}, STEERING))
-    ['gain margin 1.50 of 2']
+    ['gain 1.50 of 2']
     """
     if not row["stable"]:
         yield "unstable"
         return
     if row["gain"] < wanted.gain:
-        yield f"gain margin {row['gain']:.2f} of {wanted.gain:g}"
+        yield f"gain {row['gain']:.2f} of {wanted.gain:g}"
     if row["phase"] < wanted.phase:
-        yield f"phase margin {math.degrees(row['phase']):.0f}° of {math.degrees(wanted.phase):.0f}°"
+        yield f"phase {math.degrees(row['phase']):.0f}° of {math.degrees(wanted.phase):.0f}°"
     if row["delay"] < wanted.delay:
-        yield f"delay margin {1e3 * row['delay']:.1f} ms of {1e3 * wanted.delay:g} ms"
+        yield f"delay {1e3 * row['delay']:.1f} ms of {1e3 * wanted.delay:g} ms"
 
 
 def judged(scenario: Scenario, table: pd.DataFrame) -> pd.DataFrame:
