@@ -21,7 +21,7 @@ from .conftest import scenario
 @pytest.fixture(scope="module")
 def bench() -> Bench:
     """S at two speeds; coupled too hard, so that something falls short."""
-    hard = scenario().replace(control=kl.control.SolidLike(coupling=0.6))
+    hard = scenario().replace(control=kl.control.SolidLike(coupling=0.8))
     said: list[str] = []
     found = examine(hard, speeds=[30.0, 265 / 3.6], conicities=[None, 0.3], frictions=[0.35], step=said.append)
     assert said[0] == "margins at 108 km/h"

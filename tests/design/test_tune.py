@@ -67,12 +67,12 @@ def test_a_design_shows_its_response(torque: Design) -> None:
 
 
 def test_a_design_on_a_plant_that_the_vehicle_does_not_bear_is_told() -> None:
-    """The moment loop knows the actuators alone: five times faster than the hunting of the wheelsets allows."""
-    moment = yaw_moment_loop(VEHICLE, ["265 km/h"])
+    """The moment loop knows the actuators alone: several times faster than the hunting of the wheelsets allows."""
+    moment = yaw_moment_loop(VEHICLE, ["108 km/h"])
     assert moment.met
-    assert not moment.full["stable"].any()
-    assert "unstable" in " ".join(moment.words())
-    assert not moment.check.stable
+    words = moment.words()
+    assert all("keeps" not in sentence for sentence in words[1:])
+    assert sum(sentence.startswith("On the full vehicle") for sentence in words) == 4
 
 
 def test_what_cannot_be_kept_is_told() -> None:

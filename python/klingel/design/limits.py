@@ -29,8 +29,9 @@ STEERING = Limits(gain=2.0, delay=50e-3)
 MOTORS = Limits(gain=2.0, phase=math.radians(45.0), delay=10e-3)
 OTHERS = Limits(gain=2.0, phase=math.radians(30.0))
 
-DATABASE_GAIN = 1.6
-"""Of steering by a curvature database up to `DATABASE_SPEED`, which has no gyro to lean on."""
+DATABASE = Limits(gain=2.0)
+SLOW_DATABASE = Limits(gain=1.6)
+"""Of steering by a curvature database, above `DATABASE_SPEED` and up to it: it has no gyro to lean on."""
 
 DATABASE_SPEED = 31.0
 """[m/s]"""
@@ -49,8 +50,9 @@ def limits(scenario: Scenario, kind: str, speed: float) -> Limits:
         return MOTORS
     if kind not in ("steering", "secondary"):
         return OTHERS
-    database = getattr(scenario.control, "curvature", None) == "database"
-    return Limits(DATABASE_GAIN, delay=STEERING.delay) if database and speed <= DATABASE_SPEED else STEERING
+    if getattr(scenario.control, "curvature", None) == "database":
+        return SLOW_DATABASE if speed <= DATABASE_SPEED else DATABASE
+    return STEERING
 
 
 def missed(row: Mapping[Any, Any], wanted: Limits) -> Iterator[str]:
