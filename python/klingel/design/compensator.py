@@ -86,8 +86,11 @@ class Compensator:
 
     @property
     def system(self) -> control.StateSpace:
-        """As python-control's sampled StateSpace from `measurements` to `driven`, such as
-        `klingel.control.DiscreteController` runs."""
+        """As python-control's sampled StateSpace from `measurements` to `driven`, departures from the operating point.
+
+        `klingel.control.DiscreteController(found.system, measurements=found.measurements, commands=found.driven)` runs
+        it where the scenario had no other strategy.
+        """
         import control
 
         E = _expansion(self.commands)
