@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from klingel.design import Compensator, loop_shaping, loops, lqg
-from klingel.design.compensator import Compensated, Made, _closed, _norm, robust
+from klingel.design.compensator import Compensated, Made
 from klingel.design.opening import STEERING, WHEELSETS, attached, base, cut
+from klingel.design.synthesis import closed_of, norm_of, robust
 from klingel.errors import InputError
 from klingel.linear.blocks import eigenvalues, lives
 from klingel.linear.model import LinearModel
@@ -128,12 +129,12 @@ def test_robust_against_theory() -> None:
         plant = (np.array([[1.0]]), np.array([[1e-3 * k]]), np.array([[1.0]]), np.array([[0.0]]))
         K, gamma = robust(*plant, 1e-3)
         assert gamma / 1.1 == pytest.approx(math.sqrt(2.0), rel=0.01)
-        assert _norm(plant, K) <= gamma * 1.001
-        assert np.abs(np.linalg.eigvals(_closed(plant, K))).max() < 1.0
+        assert norm_of(plant, K) <= gamma * 1.001
+        assert np.abs(np.linalg.eigvals(closed_of(plant, K))).max() < 1.0
     unstable = (np.array([[np.exp(1e-3 * 5.0)]]), np.array([[1e-3]]), np.array([[1.0]]), np.array([[0.0]]))
     K, gamma = robust(*unstable, 1e-3)
     assert gamma > 5.0
-    assert _norm(unstable, K) <= gamma * 1.001
+    assert norm_of(unstable, K) <= gamma * 1.001
 
 
 def test_the_norm_is_that_of_python_control() -> None:
@@ -147,7 +148,7 @@ def test_the_norm_is_that_of_python_control() -> None:
     p, c = (np.ravel(system.frequency_response(omega).complex) for system in (P, C))
     S = 1.0 / (1.0 - p * c)
     blocks = np.array([[c * S * p, c * S], [S * p, S]]).transpose(2, 0, 1)
-    assert _norm(plant, K) == pytest.approx(float(np.linalg.svd(blocks, compute_uv=False).max()), rel=1e-3)
+    assert norm_of(plant, K) == pytest.approx(float(np.linalg.svd(blocks, compute_uv=False).max()), rel=1e-3)
 
 
 def test_bad_synthesis_is_refused() -> None:

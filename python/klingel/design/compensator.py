@@ -5,22 +5,22 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_continuous_are, solve_discrete_are, solve_discrete_lyapunov
+from scipy.linalg import solve_discrete_are, solve_discrete_lyapunov
 
 from klingel.design.check import Check, check
 from klingel.design.loops import of_model
 from klingel.design.margins import COLUMNS, margins_of_all, row
 from klingel.design.opening import STEERING, Weights, attached, base, cut
+from klingel.design.synthesis import closed_of, delayed, growth_of, integrating, norm_of, robust, series, solved
 from klingel.errors import InputError
 from klingel.linear.model import LinearModel
-from klingel.linear.reduce import hankel_values, reduced, to_continuous, to_sampled
-from klingel.linear.response import Resolvent
+from klingel.linear.reduce import hankel_values, reduced
 from klingel.linear.sweep import Linearised
 from klingel.scenario import Scenario
 from klingel.units import Quantity
@@ -31,19 +31,12 @@ if TYPE_CHECKING:
     import control
 
 Real = NDArray[np.float64]
-System = tuple[Real, Real, Real, Real]
 
 SAMPLE_TIME = 1e-3
 """[s]"""
 
 BOUND = 0.01
 """Part of the largest Hankel value that the error bound of a reduction may have where no order is given."""
-
-WORSE = 1.1
-"""gamma of a loop shaping over the least one: a compensator at the very least would be ill-conditioned."""
-
-POINTS = 2000
-"""Frequencies at which a norm is computed again."""
 
 CONICITIES = (None, 0.05, 0.4)
 FRICTIONS = (0.3,)
@@ -219,9 +212,9 @@ def lqg(
     A, B, C, D = plant.A, plant.B, plant.C[:m], plant.D[:m]
     Cz, Dz = plant.C[places] * ratio, plant.D[places] * ratio
     R, N = np.eye(B.shape[1]) + Dz.T @ Dz, Cz.T @ Dz
-    X = _solved(solve_discrete_are, A, B, Cz.T @ Cz, R, s=N)
+    X = solved(solve_discrete_are, A, B, Cz.T @ Cz, R, s=N)
     K = np.linalg.solve(R + B.T @ X @ B, B.T @ X @ A + N.T)
-    P = _solved(solve_discrete_are, A.T, C.T, B @ B.T, np.eye(m))
+    P = solved(solve_discrete_are, A.T, C.T, B @ B.T, np.eye(m))
     L = np.linalg.solve((C @ P @ C.T + np.eye(m)).T, (A @ P @ C.T).T).T
     a = A - B @ K - L @ (C - D @ K)
     promised = float(np.trace(X @ B @ B.T) + np.trace(P @ K.T @ (R + B.T @ X @ B) @ K))
@@ -239,7 +232,7 @@ def lqg(
         sample_time=sample_time,
         promised=promised,
         norm=found,
-        reduced_growth=_growth(closed, sample_time),
+        reduced_growth=growth_of(closed, sample_time),
     )
     return _judged("LQG", scenario, made, plant)
 
@@ -265,11 +258,11 @@ def loop_shaping(
     model = base(scenario, commands, sample_time).model
     plant = reduce_plant(model, commands, command_size, measurements, order)
     k = len(commands)
-    weight = _integrating(k, integral, sample_time)
-    shaped = _series(_delayed(plant), weight)
+    weight = integrating(k, integral, sample_time)
+    shaped = series(delayed(plant.A, plant.B, plant.C, plant.D), weight)
     K, promised = robust(*shaped, sample_time)
-    norm = _norm(shaped, K)
-    whole = _series(weight, K)
+    norm = norm_of(shaped, K)
+    whole = series(weight, K)
     y = np.array([measurements[name] for name in measurements])
     made = Made(
         K=(whole[0], whole[1] / y, command_size * whole[2], command_size * whole[3] / y),
@@ -278,88 +271,9 @@ def loop_shaping(
         sample_time=sample_time,
         promised=promised,
         norm=norm,
-        reduced_growth=_growth(_closed(shaped, K), sample_time),
+        reduced_growth=growth_of(closed_of(shaped, K), sample_time),
     )
     return _judged("H-infinity loop shaping", scenario, made, plant)
-
-
-def robust(A: Real, B: Real, C: Real, D: Real, sample_time: float) -> tuple[System, float]:
-    """The compensator u = K y (positive feedback) of a sampled plant at 1.1 times the least gamma, and that gamma.
-
-    By the bilinear map, which keeps the norm: Glover and McFarlane's formulas in continuous time.
-
-    >>> plant = tuple(np.array([[v]]) for v in (1.0, 0.01, 1.0, 0.0))  # an integrator: gamma is sqrt(2) at least
-    >>> bool(abs(robust(*plant, 0.01)[1] / WORSE - 2.0**0.5) < 0.01)
-    True
-    """
-    A, B, C, D = to_continuous(A, B, C, D, sample_time)
-    S, R = np.eye(B.shape[1]) + D.T @ D, np.eye(len(C)) + D @ D.T
-    drift = A - B @ np.linalg.solve(S, D.T @ C)
-    X = _solved(solve_continuous_are, drift, B, C.T @ np.linalg.solve(R, C), S)
-    Z = _solved(solve_continuous_are, drift.T, C.T, B @ np.linalg.solve(S, B.T), R)
-    gamma = WORSE * math.sqrt(1.0 + float(np.abs(np.linalg.eigvals(X @ Z)).max()))
-    F = -np.linalg.solve(S, D.T @ C + B.T @ X)
-    L = (1.0 - gamma**2) * np.eye(len(A)) + X @ Z
-    H = np.asarray(gamma**2 * np.linalg.solve(L.T, Z @ C.T), dtype=np.float64)
-    return to_sampled(A + B @ F + H @ (C + D @ F), H, B.T @ X, -D.T, sample_time), gamma
-
-
-def _solved(solver: Callable[..., Any], *matrices: Real, **more: Real) -> Real:
-    """The solution of a Riccati equation; errors: InputError where there is none."""
-    try:
-        return np.asarray(solver(*matrices, **more))
-    except np.linalg.LinAlgError:
-        remedy = "measure or command what moves there, or give the scenario a strategy that holds it"
-        message = "has no solution: something in the vehicle that does not decay is out of reach or not seen"
-        raise InputError.single("synthesis", None, message, remedy=remedy) from None
-
-
-def _integrating(k: int, frequency: float | None, sample_time: float) -> System:
-    """k times 1 + w/s by the bilinear rule, or one."""
-    if frequency is None:
-        return np.zeros((0, 0)), np.zeros((0, k)), np.zeros((k, 0)), np.eye(k)
-    step = 2.0 * np.pi * frequency * sample_time
-    return np.eye(k), np.eye(k), step * np.eye(k), (1.0 + 0.5 * step) * np.eye(k)
-
-
-def _delayed(plant: Reduced) -> System:
-    """A sample later at its inputs."""
-    n, k = plant.B.shape
-    A = np.block([[plant.A, plant.B], [np.zeros((k, n + k))]])
-    return A, np.vstack((np.zeros((n, k)), np.eye(k))), np.hstack((plant.C, plant.D)), np.zeros((len(plant.C), k))
-
-
-def _series(second: System, first: System) -> System:
-    """second after first."""
-    A1, B1, C1, D1 = first
-    A2, B2, C2, D2 = second
-    A = np.block([[A2, B2 @ C1], [np.zeros((len(A1), len(A2))), A1]])
-    return A, np.vstack((B2 @ D1, B1)), np.hstack((C2, D2 @ C1)), D2 @ D1
-
-
-def _closed(plant: System, K: System) -> Real:
-    """States of a plant without direct part and of u = K y."""
-    A, B, C, _ = plant
-    a, b, c, d = K
-    return np.block([[A + B @ d @ C, B @ c], [b @ C, a]])
-
-
-def _norm(plant: System, K: System) -> float:
-    """Largest singular value of [K; I] (I - P K)^-1 [P I] over all frequencies; the plant has no direct part."""
-    z = np.exp(1j * np.append(np.geomspace(1e-6, np.pi, POINTS), [0.0, np.pi]))
-    _, B, C, _ = plant
-    a, b, c, d = K
-    closed = _closed(plant, K)
-    into = np.block([[B, B @ d], [np.zeros((len(a), B.shape[1])), b]])
-    out = np.block([[d @ C, c], [C, np.zeros((len(C), len(a)))]])
-    through = np.block([[np.zeros((B.shape[1], B.shape[1])), d], [np.zeros((len(C), B.shape[1])), np.eye(len(C))]])
-    x = Resolvent.of(closed).solve(z, into.astype(np.complex128))
-    return float(np.linalg.svd(np.einsum("in,nfj->fij", out, x) + through, compute_uv=False).max())
-
-
-def _growth(A: Real, sample_time: float) -> float:
-    """Largest real part of a sampled system's eigenvalues [1/s]."""
-    return float(np.log(np.abs(np.linalg.eigvals(A)).max()) / sample_time)
 
 
 def _judged(method: str, scenario: Scenario, made: Made, plant: Reduced) -> Compensator:
