@@ -6,7 +6,7 @@ import pytest
 import klingel as kl
 from klingel.design import Loop, margins_of
 from klingel.design.loops import loops
-from klingel.design.margins import Margins, of_response
+from klingel.design.margins import Margins, margins_of_all, of_response
 from klingel.errors import InputError
 from klingel.linear.blocks import eigenvalues, lives
 from klingel.linear.margins import loop_gain
@@ -172,3 +172,12 @@ def test_a_model_without_controllers_has_no_loops_to_open() -> None:
 
     with pytest.raises(InputError, match="no sampled controllers"):
         Closed(plant, [{}])
+
+
+def test_filters_at_half_the_sample_rate_are_no_crossings() -> None:
+    """The bilinear filters of a hard coupling have poles at z = -1, where nothing is to be seen."""
+    hard = scenario(speed=265.0 / 3.6).replace(control=kl.control.SolidLike(coupling=0.5))
+    found = [loop for loop in loops(hard) if loop.kind == "motors"]
+    for edge in margins_of_all(found):
+        assert not edge.crossover > 100.0
+        assert not edge.sensitivity_frequency > 200.0

@@ -4,7 +4,7 @@ Every design is checked this way by itself, and says where it fails in words."""
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -105,13 +105,14 @@ def check(
     frictions: Sequence[float] = FRICTIONS,
     curves: Sequence[Case] | None = None,
     margins: bool = False,
+    linearised: Callable[[float | None], Callable[[Scenario], Linearised]] = lambda at: Sweep(at=at),
 ) -> Check:
     """The closed loop of the full vehicle over speed x conicity x friction on straight track, and in curves x friction.
 
     speeds: None for those of the five curves of the study; conicities: of wheels as cones, None for the profiles as
     they are; curves: with their own speeds, None for the five of the study, () for none; cones have no flange, so
     curves are run with the scenario's own profiles; margins: also those of every loop at every place, at ten times the
-    cost.
+    cost; linearised: makes what linearises scenarios at a place on their track, such as with a compensator around them.
     Each new conicity compiles its contact table first, which takes some seconds and is kept. Errors: InputError.
 
     >>> import klingel as kl
@@ -127,7 +128,7 @@ def check(
     rows: list[Row] = []
     edges: list[dict[str, object]] = []
     worst: tuple[float, Linearised | None] = (-math.inf, None)
-    for here, made in _places(scenario, fast, conicities, frictions, cases):
+    for here, made in _places(scenario, fast, conicities, frictions, cases, linearised):
         found: Row = {"growth": math.inf, "damping": math.nan, "frequency": math.nan, "outcome": "no steady state"}
         if made is not None:
             found = stability(made.model)
@@ -153,18 +154,19 @@ def _places(
     conicities: Sequence[float | None],
     frictions: Sequence[float],
     cases: Sequence[Case],
+    linearised: Callable[[float | None], Callable[[Scenario], Linearised]],
 ) -> Iterator[tuple[Row, Linearised | None]]:
     """Where to look, and the model there, None without a steady state; neighbours follow each other."""
     for conicity in conicities:
         wheels = scenario if conicity is None else coned(scenario, conicity)
         for friction in frictions:
-            sweep = Sweep()
+            sweep = linearised(None)
             for speed in speeds:
                 slope = math.nan if conicity is None else conicity
                 here: Row = {"speed": speed, "radius": math.inf, "conicity": slope, "friction": friction}
                 yield here, _solved(sweep, wheels.replace(speed=speed, friction=friction, adhesion=None))
     for case in cases:
-        sweep = Sweep(at=middle(case))
+        sweep = linearised(middle(case))
         for friction in frictions:
             here = {"speed": case.speed, "radius": case.radius, "conicity": math.nan, "friction": friction}
             curved = scenario.replace(track=case.track, speed=case.speed, friction=friction, adhesion=None)
@@ -184,7 +186,7 @@ def middle(case: Case) -> float:
     return float(0.5 * (s[arc] + s[arc + 1]))
 
 
-def _solved(sweep: Sweep, scenario: Scenario) -> Linearised | None:
+def _solved(sweep: Callable[[Scenario], Linearised], scenario: Scenario) -> Linearised | None:
     try:
         return sweep(scenario)
     except SimulationError:

@@ -16,6 +16,9 @@ Complex = NDArray[np.complex128]
 LOWEST = 2e-3
 """Lowest frequency [Hz]: integrals with time constants of ten seconds and more are seen whole."""
 
+SHORT = 5e-6
+"""Of half the sample rate, in sample rates: there bilinear filters have poles of no size, which are rounding."""
+
 SPREAD = 160
 """Frequencies spread evenly over the logarithm."""
 
@@ -25,7 +28,7 @@ SHARP = 0.3
 ABOUT = (0.0, 0.3, 0.8, 2.0)
 """Distances from the frequency of such a pole, in its decay rate."""
 
-TURN = 0.12
+TURN = 0.08
 """Chordal distance of neighbours on the sphere of L (of diameter 1) above which another one goes between."""
 
 ROUNDS = 6
@@ -40,7 +43,7 @@ PIECES = 8
 
 def frequencies(closed: Closed) -> Real:
     """[Hz], to half the sample rate, at the poles of a closed model and between them."""
-    highest = 0.5 / closed.sample_time
+    highest = (0.5 - SHORT) / closed.sample_time
     s = closed.poles
     s = s[(s.imag > 0.0) & (-s.real < SHARP * np.abs(s))]
     f, width = s.imag / (2.0 * np.pi), np.abs(s.real) / (2.0 * np.pi)

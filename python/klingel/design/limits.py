@@ -29,8 +29,9 @@ STEERING = Limits(gain=2.0, delay=50e-3)
 MOTORS = Limits(gain=2.0, phase=math.radians(45.0), delay=10e-3)
 OTHERS = Limits(gain=2.0, phase=math.radians(30.0))
 
-DATABASE_GAIN = 1.6
-"""Of steering by a curvature database up to `DATABASE_SPEED`, which has no gyro to lean on."""
+DATABASE = Limits(gain=2.0)
+SLOW_DATABASE = Limits(gain=1.6)
+"""Of steering by a curvature database, above `DATABASE_SPEED` and up to it: it has no gyro to lean on."""
 
 DATABASE_SPEED = 31.0
 """[m/s]"""
@@ -49,25 +50,26 @@ def limits(scenario: Scenario, kind: str, speed: float) -> Limits:
         return MOTORS
     if kind not in ("steering", "secondary"):
         return OTHERS
-    database = getattr(scenario.control, "curvature", None) == "database"
-    return Limits(DATABASE_GAIN, delay=STEERING.delay) if database and speed <= DATABASE_SPEED else STEERING
+    if getattr(scenario.control, "curvature", None) == "database":
+        return SLOW_DATABASE if speed <= DATABASE_SPEED else DATABASE
+    return STEERING
 
 
 def missed(row: Mapping[Any, Any], wanted: Limits) -> Iterator[str]:
     """What a row of `klingel.design.margins` falls short of, in words; nothing where it keeps the limits.
 
     >>> list(missed({"stable": True, "gain": 1.5, "phase": 1.0, "delay": 0.1}, STEERING))
-    ['gain margin 1.50 of 2']
+    ['gain 1.50 of 2']
     """
     if not row["stable"]:
         yield "unstable"
         return
     if row["gain"] < wanted.gain:
-        yield f"gain margin {row['gain']:.2f} of {wanted.gain:g}"
+        yield f"gain {row['gain']:.2f} of {wanted.gain:g}"
     if row["phase"] < wanted.phase:
-        yield f"phase margin {math.degrees(row['phase']):.0f}° of {math.degrees(wanted.phase):.0f}°"
+        yield f"phase {math.degrees(row['phase']):.0f}° of {math.degrees(wanted.phase):.0f}°"
     if row["delay"] < wanted.delay:
-        yield f"delay margin {1e3 * row['delay']:.1f} ms of {1e3 * wanted.delay:g} ms"
+        yield f"delay {1e3 * row['delay']:.1f} ms of {1e3 * wanted.delay:g} ms"
 
 
 def judged(scenario: Scenario, table: pd.DataFrame) -> pd.DataFrame:

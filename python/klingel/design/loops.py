@@ -3,6 +3,7 @@ One Schur form of the closed model serves all loops and all frequencies: S = 1 +
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from klingel.errors import InputError
 from klingel.linear.blocks import eigenvalues, lives
 from klingel.linear.halves import Halves, Part, parts
-from klingel.linear.model import LinearModel
+from klingel.linear.model import LinearModel, Signal
 from klingel.linear.response import Resolvent, points
 from klingel.linear.sweep import Sweep
 from klingel.scenario import Scenario
@@ -153,10 +154,6 @@ class Loop:
 
 
 def _with_states(model: LinearModel, A: Real, count: int) -> LinearModel:
-    import dataclasses
-
-    from klingel.linear.model import Signal
-
     added = tuple(Signal(f"control.later.{i}", "1") for i in range(count))
     none = model.select(inputs=(), outputs=())
     return dataclasses.replace(

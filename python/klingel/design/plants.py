@@ -3,8 +3,8 @@ The controller is the block diagram that runs; the plant is sampled exactly behi
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Literal
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, Literal
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -107,12 +107,11 @@ def plant_loop(scenario: Scenario, kind: Literal["steering", "motors"]) -> Respo
     else:
         plants = steering_plants(vehicle, speed, contact)
         targets = [f"{FIRST}.actuator_left.force"]
-    driven = [command["target"] for command in spec["commands"]]
-    target = next((name for name in targets if name in driven), None)
+    target = next((name for name in targets if name in {c["target"] for c in spec["commands"]}), None)
     if target is None:
         remedy = f"{type(strategy).__name__} commands none of {', '.join(targets)}"
         raise InputError.single("kind", kind, "is no loop of this strategy", remedy=remedy)
-    left, right = driven.index(target), driven.index(target.replace("left", "right"))
+    spec = leading_to(spec, (target, target.replace("left", "right")))
     T, measured = spec["sample_time"], spec["measurements"]
     sampled = {name: _held(plant, T) for name, plant in plants.items()}
 
@@ -120,7 +119,7 @@ def plant_loop(scenario: Scenario, kind: Literal["steering", "motors"]) -> Respo
         omega = 2.0 * np.pi * np.atleast_1d(np.asarray(frequencies, dtype=np.float64))
         z = np.exp(1j * omega * T)
         commands = controller_response(spec, {SPEED: speed}, omega)
-        u = 0.5 * (commands[:, left] - commands[:, right])
+        u = 0.5 * (commands[:, 0] - commands[:, 1])
         L = np.zeros(len(z), dtype=np.complex128)
         for name, (numerator, denominator) in sampled.items():
             P = np.polyval(numerator, z) / np.polyval(denominator, z)
@@ -130,6 +129,31 @@ def plant_loop(scenario: Scenario, kind: Literal["steering", "motors"]) -> Respo
         return L
 
     return response
+
+
+def leading_to(spec: Mapping[str, Any], targets: Sequence[str]) -> dict[str, Any]:
+    """The part of a block diagram that makes some of its commands, in their order."""
+    commands = [next(c for c in spec["commands"] if c["target"] == target) for target in targets]
+    needed = {command["signal"] for command in commands}
+    blocks = []
+    for block in reversed(spec["blocks"]):
+        if block["name"] in needed or needed & set(block.get("outputs", ())):
+            blocks.append(block)
+            needed |= set(_words({key: value for key, value in block.items() if key not in ("kind", "name")}))
+    measured = [name for name in spec["measurements"] if name in needed]
+    return {**spec, "measurements": measured, "blocks": blocks[::-1], "commands": commands, "probes": []}
+
+
+def _words(value: object) -> Iterator[str]:
+    """Every string inside a value: names of signals, in a block."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping):
+        for each in value.values():
+            yield from _words(each)
+    elif isinstance(value, (list, tuple)):
+        for each in value:
+            yield from _words(each)
 
 
 def _held(plant: Rational, sample_time: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -5,14 +5,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from klingel.control import IRWLike, SolidLike
-from klingel.design.check import Check, check
+from klingel.design.check import check
+from klingel.design.designed import Basis, Design, robustness
 from klingel.design.grid import LOWEST, whole
 from klingel.design.limits import MOTORS, STEERING, Limits, missed
 from klingel.design.loops import loops
@@ -26,13 +26,9 @@ from klingel.track import Track
 from klingel.units import Quantity, to_si
 from klingel.vehicle import Vehicle
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-Basis = Literal["plant", "vehicle"]
 Kind = Literal["steering", "motors"]
 
 SPAN = 8.0
@@ -53,71 +49,6 @@ HIGHEST = 0.4995
 CONICITIES = (None, 0.05, 0.4)
 FRICTIONS = (0.3,)
 """Of the check that every design makes by itself."""
-
-
-@dataclass(frozen=True, eq=False)
-class Design:
-    """A loop that was designed.
-
-    parameter, value: of the strategy, SI; strategy: with it; basis: what it was designed on, plant or vehicle; met:
-    whether any value keeps the wanted margins there: without, the value has the largest least disk margin; shown: the
-    loop on its basis, one a speed, the least robust one of the vehicle's; full: rows of `klingel.design.margins` on the
-    full vehicle, of this kind of loop; check: of all that the strategy does.
-    """
-
-    parameter: str
-    value: float
-    strategy: Strategy
-    basis: Basis
-    met: bool
-    wanted: Limits
-    shown: tuple[Shown, ...]
-    full: pd.DataFrame
-    check: Check
-
-    @property
-    def gains(self) -> dict[str, float]:
-        """What the strategy takes: parameter to value."""
-        return {self.parameter: self.value}
-
-    @property
-    def margins(self) -> Margins:
-        """On the basis, at the speed with the least disk margin."""
-        return min((each.margins for each in self.shown), key=_robustness)
-
-    def bode(self) -> pd.DataFrame:
-        """The loop on its basis: speed [m/s], frequency [Hz], magnitude [-], phase [rad]."""
-        import pandas as pd
-
-        return pd.concat(
-            [
-                pd.DataFrame(
-                    {
-                        "speed": each.speed,
-                        "frequency": each.frequencies,
-                        "magnitude": np.abs(each.response),
-                        "phase": np.unwrap(np.angle(each.response)),
-                    }
-                )
-                for each in self.shown
-            ],
-            ignore_index=True,
-        )
-
-    def words(self) -> tuple[str, ...]:
-        """The verdict in sentences: on its basis, on the full vehicle, over the grid."""
-        m, wanted = self.margins, self.wanted
-        asked = f"gain {wanted.gain:g}, phase {math.degrees(wanted.phase):.0f}°, delay {1e3 * wanted.delay:.0f} ms"
-        found = f"gain {m.gain:.2f}, phase {math.degrees(m.phase):.0f}°, delay {1e3 * m.delay:.1f} ms"
-        where = "the plant" if self.basis == "plant" else "the full vehicle"
-        verdict = f"keeps {asked} on {where}" if self.met else f"no value keeps {asked} on {where}"
-        told = [f"{self.parameter} = {self.value:.4g}: {verdict}; the worst speed has {found}."]
-        for each in self.full.to_dict("records"):
-            if short := "; ".join(missed(each, wanted)):
-                told.append(f"On the full vehicle {each['loop']} at {3.6 * each['speed']:.0f} km/h: {short}.")
-        if len(told) == 1:
-            told.append("All loops of the full vehicle keep them.")
-        return (*told, *self.check.words())
 
 
 def tune(
@@ -160,7 +91,7 @@ def tune(
     if kept:
         value = _last(keeps, kept[-1], scan)
     else:
-        value = max(scan, key=lambda v: min(_robustness(each.margins) for each in known[v]))
+        value = max(scan, key=lambda v: min(robustness(each.margins) for each in known[v]))
     best = replace(scenario, path, value)
     assert best.control is not None
     table = margins(best, fast)
@@ -235,15 +166,10 @@ def _on_vehicle(sweep: Sweep, scenario: Scenario, kind: Kind) -> Shown:
         remedy = f"{type(scenario.control).__name__} has other loops"
         raise InputError.single("kind", kind, "is no loop of this strategy", remedy=remedy)
     edges = margins_of_all(found)
-    worst = min(range(len(found)), key=lambda i: _robustness(edges[i]))
+    worst = min(range(len(found)), key=lambda i: robustness(edges[i]))
     f, S = whole(found[worst].closed)
     index = found[worst].index
     return Shown(found[worst].name, scenario.speed, f, 1.0 / S[:, index, index] - 1.0, edges[worst])
-
-
-def _robustness(margins: Margins) -> float:
-    """Disk margin, below zero for an unstable loop."""
-    return margins.disk if margins.stable else -1.0
 
 
 def _begin(vehicle: Vehicle, speeds: Sequence[Quantity], strategy: Strategy) -> Scenario:
