@@ -161,7 +161,7 @@ def ranges(alone: pd.DataFrame, nominal: pd.Series, figure: str) -> pd.DataFrame
     return made.iloc[order].reset_index(drop=True)
 
 
-def worst(table: pd.DataFrame, count: int = 10) -> pd.DataFrame:
+def worst(table: pd.DataFrame, count: int = 6) -> pd.DataFrame:
     """The worst runs first: those that did not get to the end, then by y_max."""
     ended = table["outcome"] != COMPLETED
     order = table.assign(ended=ended).sort_values(["ended", "y_max_mm"], ascending=[False, False], kind="stable")
