@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 BUTTERWORTH = 0.7
 """Damping ratio of all second-order low-passes here."""
 
+FAR = 50e-3
+"""Displacement beyond a strategy's reach up to which it still counts [m]; no wheelset goes so far."""
+
 
 @dataclass(frozen=True)
 class Plant:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from klingel.control.basics import SPEED, WHEELSETS, Timing, Wheelset, check_positive, scheduled
 from klingel.control.common import (
+    FAR,
     Plant,
     command_steering,
     database_curvature,
@@ -36,9 +37,6 @@ if TYPE_CHECKING:
     from klingel.vehicle import Vehicle
 
 Curvature = Literal["gyro", "database"]
-
-FAR = 50e-3
-"""Displacement beyond the reach up to which more of it still counts a little [m]; no wheelset goes so far."""
 
 BEYOND_REACH = 0.1
 """Share of what is beyond the reach that counts."""
@@ -92,7 +90,7 @@ class IRWLike:
     integral_time: float = 0.6
     reach: float = 4e-3
     integral_share: float = 0.1
-    current_frequency: float = 12.0
+    current_frequency: float = 5.0
     gyro_share: float = 0.6
     gyro_frequency: float = 1.5
     extrapolation: float = 0.5

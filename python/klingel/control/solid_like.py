@@ -8,8 +8,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from klingel.control.basics import SPEED, WHEELSETS, Timing, Wheelset, check_positive, scheduled
+from klingel.control.basics import SPEED, SPEED_GRID, WHEELSETS, Timing, Wheelset, check_positive, scheduled
 from klingel.control.common import (
+    FAR,
     Plant,
     command_steering,
     database_curvature,
@@ -40,8 +41,11 @@ class SolidLike:
 
     coupling: damping between the wheels over f11 r0^2/V up to `coupling_speed` [m/s], falling with 1/V above: enough to
         centre the wheelsets, little enough that their hunting stays damped on the soft primary suspension.
-    common_share: of that damping where both wheelsets of a bogie err alike, which moves the bogie aside; where they err
-        opposedly, which turns it, all of it acts: docs/theory/control.md.
+    common_share: of that damping where both wheelsets of a bogie err alike, which moves the bogie aside, up to
+        `slow_speed`, falling with 1/V above; where they err opposedly, which turns it, all of it acts:
+        docs/theory/control.md.
+    reach: displacement of a bogie [m] beyond which all of it acts on that too: far aside, where lost adhesion leaves a
+        wheelset, a strong coupling brings it back.
     slow_speed: running speed below which that damping stays [m/s]; delays and the transmission's torsion bear no more.
     integral_time: of the speed loop [s]. Slow, because integral coupling of two wheels acts as a spring at the hunting
         frequency; it only removes what friction and unequal radii leave.
@@ -64,7 +68,8 @@ class SolidLike:
 
     coupling: float = 0.36
     coupling_speed: float = 56.0
-    common_share: float = 0.15
+    common_share: float = 0.3
+    reach: float = 2e-3
     slow_speed: float = 26.0
     integral_time: float = 5.0
     lead_pole: float = 0.002
@@ -84,6 +89,7 @@ class SolidLike:
             "coupling",
             "coupling_speed",
             "common_share",
+            "reach",
             "slow_speed",
             "integral_time",
             "lead_pole",
@@ -127,7 +133,9 @@ class SolidLike:
     def _speed_loop(self, d: Diagram, plant: Plant, motors: Motors, w: Wheelset) -> None:
         """u = K(s) (lambda V rho/r0 - wd) of the pair, plus the back-EMF of the commanded difference."""
         ts = self.timing.sample_time
-        error = pair_feedback(d, w, "wd.shared", "wd.error", common=self.common_share, opposed=1.0)
+        share = scheduled(d, "speed_loop.common_share", lambda v: self.common_share * min(1.0, self.slow_speed / v))
+        within = pair_feedback(d, w, "wd.shared", "wd.error", common=share, opposed=1.0)
+        error = d.sum(f"{w.name}.wd.coupled", {within: 1.0, self._beyond_reach(d, plant, w): 1.0})
         shape = [notch(self.notch_frequency, depth=self.notch_depth, width=self.notch_width, sample_time=ts)]
         if motors.lag > 0.0:
             shape.insert(0, lead(motors.lag, self.lead_pole, sample_time=ts))
@@ -139,6 +147,17 @@ class SolidLike:
         feedback = d.pi(f"{w.name}.u.feedback", shaped, proportional=proportional, integral=integral, limit=limit)
         back_emf = motors.per_speed(d, w.name, plant.speed_ratio)
         command_motors(d, motors, w.name, d.sum(f"{w.name}.u", {feedback: 1.0, f"{w.name}.turn": back_emf}))
+
+    def _beyond_reach(self, d: Diagram, plant: Plant, w: Wheelset) -> str:
+        """What a bogie errs as a whole by more than the reach tells, V gamma y/r0^2 [rad/s]; made once."""
+        name = f"{w.bogie_name}.wd.beyond"
+        if d.has(name):
+            return name
+        slope = self.contact.conicity / plant.radius**2
+        aside = d.quotient(f"{name}.mean", f"{w.bogie_name}.wd.shared.mean", d.measure(SPEED), floor=SPEED_GRID[0])
+        reach, far = slope * self.reach, slope * (self.reach + FAR)
+        excess = d.lookup(f"{name}.excess", aside, (-far, -reach, reach, far), (reach - far, 0.0, 0.0, far - reach))
+        return d.product(name, excess, d.measure(SPEED))
 
     def _yaw_moment_loop(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
         """Integral control of the total yaw moment on the wheelset to what its spin needs, around the feedforward."""
