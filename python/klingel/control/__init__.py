@@ -2,6 +2,7 @@
 S and I of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 207-217, others beside them, and none."""
 
 from klingel.control.basics import Timing
+from klingel.control.coupling import WheelCoupling
 from klingel.control.feedforward import ContactDesign
 from klingel.control.feedforward_steering import Feedforward
 from klingel.control.irw_like import IRWLike
@@ -31,6 +32,7 @@ __all__ = [
     "TorqueVectoring",
     "Traction",
     "TrailedIRW",
+    "WheelCoupling",
     "YawMoment",
     "YawRelaxation",
 ]
