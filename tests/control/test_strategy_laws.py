@@ -61,6 +61,8 @@ def run(kind: type[Any], vehicle: str) -> xr.Dataset:
 
 def test_every_strategy_has_its_name_in_files() -> None:
     assert set(STRATEGIES.values()) == set(FITS)
+    pair = {"strategy": "feedforward", "pair": {"share": 0.2, "full_speed": "100 km/h"}}
+    assert strategy(pair) == control.Feedforward(pair=control.WheelCoupling(share=0.2, full_speed=100.0 / 3.6))
     assert {name.replace("_", "") for name in STRATEGIES} == {kind.__name__.lower() for kind in FITS}
     assert strategy({"strategy": "yaw_relaxation", "frequency": "0.4 Hz"}) == control.YawRelaxation(frequency=0.4)
     assert strategy({"strategy": "torque_vectoring", "torque_max": "2 kN m"}) == control.TorqueVectoring(torque_max=2e3)
@@ -81,8 +83,8 @@ def test_which_strategy_fits_which_vehicle(kind: type[Any]) -> None:
     ("make", "said"),
     [
         (lambda: control.YawRelaxation(relaxation=1.2), "relaxation = 1.2: is more than the springs"),
-        (lambda: control.TrailedIRW(current_frequency=5.0), "current_frequency = 5.0: does nothing in TrailedIRW"),
-        (lambda: control.Feedforward(yaw_frequency=1.0), "yaw_frequency = 1.0: does nothing in Feedforward"),
+        (lambda: control.TrailedIRW(current_frequency=7.0), "current_frequency = 7.0: does nothing in TrailedIRW"),
+        (lambda: control.WheelCoupling(share=0.0), "control.pair.share = 0.0: must be positive"),
         (lambda: control.TorqueVectoring(torque_max=0.0), "torque_max = 0.0: must be positive"),
         (lambda: control.SecondaryYaw(damping=-1.0), "damping = -1.0: must be positive"),
     ],

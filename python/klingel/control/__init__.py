@@ -4,6 +4,7 @@ S and I of Perez, Busturia, Mei, Vinolas, Annual Reviews in Control 28 (2004) 20
 from klingel.control.basics import WHEELSETS, Timing, Wheelset, scheduled
 from klingel.control.common import Plant, command_steering, speed_difference
 from klingel.control.composed import Composed
+from klingel.control.coupling import WheelCoupling
 from klingel.control.diagram import Diagram
 from klingel.control.discrete import Section, bilinear, lead, low_pass, notch, slope_low_pass, transfer_function
 from klingel.control.feedforward import ContactDesign
@@ -65,6 +66,7 @@ __all__ = [
     "TorqueVectoring",
     "Traction",
     "TrailedIRW",
+    "WheelCoupling",
     "Wheelset",
     "YawMoment",
     "YawRelaxation",

@@ -4,16 +4,18 @@ Solid wheelsets centre themselves around it; pairs of independently rotating whe
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from klingel.control.basics import WHEELSETS, check_unused
+from klingel.control.basics import WHEELSETS, Timing
 from klingel.control.common import Plant
+from klingel.control.coupling import WheelCoupling
 from klingel.control.diagram import Diagram
 from klingel.control.driven import motors_of
+from klingel.control.feedforward import ContactDesign
 from klingel.control.fit import misfits
-from klingel.control.solid_like import SolidLike
 from klingel.control.steering import database_feedforward, expect_inertia, steer
+from klingel.control.traction import Traction
 from klingel.errors import Problem
 
 if TYPE_CHECKING:
@@ -22,14 +24,12 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Feedforward(SolidLike):
+class Feedforward:
     """M = kpsi [+-a rho + alpha_Y - psi_b - h p/V] - H p, all of it from curvature and cant of the database.
 
-    Independently rotating wheels have no guidance of their own: their motors couple them as in `SolidLike`, with its
-    parameters, but those of the yaw-moment loop and of the inertial sensors.
-
-    common_share: all of the damping where both wheelsets of a bogie err alike, as nothing else centres the bogie;
-        `coupling` and `coupling_speed` are so much lower.
+    pair: the damper that the motors make between independently rotating wheels, which have no guidance of their own.
+    timing: sampling and delays. contact: what the design assumes of wheel and rail.
+    traction: loop that drives and brakes the vehicle through the same motors.
 
     >>> from klingel import library
     >>> from klingel.track import Track
@@ -38,13 +38,10 @@ class Feedforward(SolidLike):
     True
     """
 
-    coupling: float = 0.25
-    coupling_speed: float = 36.0
-    common_share: float = 1.0
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_unused(self, ("yaw_frequency", "yaw_speed", "yaw_share", "sensor_frequency"))
+    pair: WheelCoupling = field(default_factory=WheelCoupling)
+    timing: Timing = field(default_factory=Timing)
+    contact: ContactDesign = field(default_factory=ContactDesign)
+    traction: Traction | None = None
 
     def problems(self, vehicle: Vehicle) -> Iterator[Problem]:
         """Why it does not fit a vehicle."""
@@ -61,12 +58,9 @@ class Feedforward(SolidLike):
         d = Diagram(sample_time=self.timing.sample_time)
         expect_inertia(d, plant, track)
         motors = motors_of(vehicle, self.traction, self.timing, speed) if vehicle.independent_wheels else None
-        if motors is not None:
-            for w in WHEELSETS:
-                self._speed_error(d, plant, w, track)
         for w in WHEELSETS:
-            if motors is not None:
-                self._speed_loop(d, plant, motors, w)
             forward = database_feedforward(d, plant, self.contact, w, track, self.timing)
+            if motors is not None:
+                self.pair.drive(d, plant, self.contact, motors, w, track, self.timing, beside={})
             steer(d, plant, w, {forward.moment: 1.0}, self.timing)
         return d.spec()

@@ -55,7 +55,7 @@ class LateralFeedback:
     slow_speed: float = 24.0
     integral_time: float = 3.0
     feedback_share: float = 0.5
-    current_frequency: float = 12.0
+    current_frequency: float = 5.0
     sensor_frequency: float = 2.0
     timing: Timing = field(default_factory=Timing)
     contact: ContactDesign = field(default_factory=ContactDesign)

@@ -37,7 +37,7 @@ class PassiveIRW:
     8
     """
 
-    current_frequency: float = 12.0
+    current_frequency: float = 5.0
     timing: Timing = field(default_factory=Timing)
     traction: Traction | None = None
 

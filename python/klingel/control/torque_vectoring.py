@@ -4,18 +4,19 @@ The yaw moment is made by creep forces along the rails, within what adhesion and
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from klingel.control.basics import SPEED, WHEELSETS, Wheelset, check_positive, check_unused, scheduled
-from klingel.control.common import Plant, database_curvature, pair_feedback, sense_inertia, speed_difference
+from klingel.control.basics import WHEELSETS, Timing, Wheelset, check_positive
+from klingel.control.common import Plant, sense_inertia
+from klingel.control.coupling import WheelCoupling
 from klingel.control.diagram import Diagram
-from klingel.control.discrete import lead, notch
 from klingel.control.driven import motors_of
+from klingel.control.feedforward import ContactDesign
 from klingel.control.fit import misfits
-from klingel.control.motors import Motors, command_motors
-from klingel.control.solid_like import SolidLike
+from klingel.control.motors import Motors
 from klingel.control.steering import database_feedforward
+from klingel.control.traction import Traction
 from klingel.errors import Problem
 
 if TYPE_CHECKING:
@@ -24,17 +25,18 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class TorqueVectoring(SolidLike):
+class TorqueVectoring:
     """Td = c (lambda V rho/r0 - wd) + (1 + c V/(f11 r0^2)) r0/(2 lambda) M, M the moment that steering would need.
 
-    The first part is the damper between the wheels of `SolidLike`, with its parameters but those of its yaw-moment loop
-    and without its integral; the second makes the moment of the feedforward by creep forces in place of actuators.
-    Those the vehicle has are left without force.
+    The first part is a damper between the wheels; the second makes the moment of the feedforward by creep forces in
+    place of actuators. Those the vehicle has are left without force.
 
-    common_share: all of the damping where both wheelsets of a bogie err alike, as nothing else centres the bogie;
-        `coupling` and `coupling_speed` are so much lower.
     torque_max: largest torque of a wheel that the feedforward asks for [N m]; 1.6 times the rated one of the library's
         DC motors, for the seconds of a curve.
+    sensor_frequency: low-pass of the inertial sensors [Hz], above the body's own modes near 1 Hz.
+    pair: the damper between the wheels.
+    timing: sampling and delays. contact: what the design assumes of wheel and rail.
+    traction: loop that drives and brakes the vehicle through the same motors.
 
     >>> from klingel import library
     >>> from klingel.track import Track
@@ -43,15 +45,15 @@ class TorqueVectoring(SolidLike):
     {'armature_voltage'}
     """
 
-    coupling: float = 0.25
-    coupling_speed: float = 36.0
-    common_share: float = 1.0
     torque_max: float = 4000.0
+    sensor_frequency: float = 2.0
+    pair: WheelCoupling = field(default_factory=WheelCoupling)
+    timing: Timing = field(default_factory=Timing)
+    contact: ContactDesign = field(default_factory=ContactDesign)
+    traction: Traction | None = None
 
     def __post_init__(self) -> None:
-        super().__post_init__()
-        check_positive(self, ("torque_max",))
-        check_unused(self, ("integral_time", "yaw_frequency", "yaw_speed", "yaw_share"))
+        check_positive(self, ("torque_max", "sensor_frequency"))
 
     def problems(self, vehicle: Vehicle) -> Iterator[Problem]:
         """Why it does not fit a vehicle."""
@@ -67,36 +69,15 @@ class TorqueVectoring(SolidLike):
         d = Diagram(sample_time=self.timing.sample_time)
         sense_inertia(d, plant, self.timing, frequency=self.sensor_frequency)
         for w in WHEELSETS:
-            self._creep_error(d, plant, w, track)
-        for w in WHEELSETS:
-            self._torque_loop(d, plant, motors, w)
+            self._drive(d, plant, motors, w, track)
         return d.spec()
 
-    def _creep_error(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
-        """Td [N m] for the moment; lambda V rho/r0 + Td V/(f11 r0^2) - wd [rad/s], what is left beside its creep."""
+    def _drive(self, d: Diagram, plant: Plant, motors: Motors, w: Wheelset, track: Track) -> None:
+        """The torque for the moment of the feedforward, asked for as a speed difference."""
         forward = database_feedforward(d, plant, self.contact, w, track, self.timing)
-        wanted = d.sum(
-            f"{w.name}.Td.wanted", {forward.moment: plant.radius / (2.0 * plant.geometry.half_tape_distance)}
-        )
+        arm = plant.radius / (2.0 * plant.geometry.half_tape_distance)
+        wanted = d.sum(f"{w.name}.Td.wanted", {forward.moment: arm})
         torque = d.saturation(f"{w.name}.Td", wanted, -self.torque_max, self.torque_max)
         d.probe(f"{w.name}.torque_forward", "N m", torque)
-        rolling = self.contact.longitudinal_creep * plant.radius**2
-        creep = scheduled(d, "speed_loop.creep", lambda v: v / rolling)
-        rho = database_curvature(d, f"{w.name}.rho.here", track, d.measure(f"{w.name}.s"))
-        turn = d.product(f"{w.name}.turn", rho, d.measure(SPEED))
-        measured = speed_difference(d, w, self.timing)
-        d.sum(f"{w.name}.wd.error", {turn: plant.speed_ratio, torque: creep, measured: -1.0})
-
-    def _torque_loop(self, d: Diagram, plant: Plant, motors: Motors, w: Wheelset) -> None:
-        """u = K(s) (Td/c + error of the pair) plus the back-EMF of the commanded difference."""
-        ts = self.timing.sample_time
-        shared = pair_feedback(d, w, "wd.shared", "wd.error", common=self.common_share, opposed=1.0)
-        per_torque = scheduled(d, "speed_loop.per_torque", lambda v: 1.0 / self._damping(plant, v))
-        error = d.sum(f"{w.name}.wd.asked", {shared: 1.0, f"{w.name}.Td": per_torque})
-        shape = [notch(self.notch_frequency, depth=self.notch_depth, width=self.notch_width, sample_time=ts)]
-        if motors.lag > 0.0:
-            shape.insert(0, lead(motors.lag, self.lead_pole, sample_time=ts))
-        shaped = d.filter(f"{w.name}.wd.shaped", error, shape)
-        gain = motors.gain(d, w.name, lambda v: self._damping(plant, v))
-        back_emf = motors.per_speed(d, w.name, plant.speed_ratio)
-        command_motors(d, motors, w.name, d.sum(f"{w.name}.u", {shaped: gain, f"{w.name}.turn": back_emf}))
+        beside = {torque: self.pair.per_torque(d, plant, self.contact)}
+        self.pair.drive(d, plant, self.contact, motors, w, track, self.timing, beside=beside)

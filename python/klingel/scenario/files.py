@@ -41,6 +41,7 @@ PARTS: dict[str, type[Any]] = {
     "contact": control.ContactDesign,
     "traction": control.Traction,
     "slip": control.SlipControl,
+    "pair": control.WheelCoupling,
 }
 """Tables inside a strategy's table."""
 
