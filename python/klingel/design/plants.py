@@ -69,7 +69,7 @@ def steering_plants(vehicle: Vehicle, speed: float, contact: ContactDesign) -> d
     2.0
     """
     plant = Plant.of(vehicle)
-    geometry, steering, primary = plant.geometry, plant.steering, vehicle.primary
+    geometry, steering, primary = plant.geometry, plant.actuators, vehicle.primary
     assert vehicle.axle_bridge is not None
     w = 2.0 * np.pi * steering.bandwidth
     lag = 1.0 + 2.0 * steering.damping_ratio / w * S + (S / w) ** 2
