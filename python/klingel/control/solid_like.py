@@ -69,7 +69,7 @@ class SolidLike:
     coupling: float = 0.36
     coupling_speed: float = 56.0
     common_share: float = 0.3
-    reach: float = 2e-3
+    reach: float = 3.2e-3
     slow_speed: float = 26.0
     integral_time: float = 5.0
     lead_pole: float = 0.002
