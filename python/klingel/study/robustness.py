@@ -19,7 +19,7 @@ from klingel.assess.header import course_of
 from klingel.control.sensor import whole_of
 from klingel.core import core
 from klingel.errors import InputError, SimulationError
-from klingel.lower import lower
+from klingel.lower import explicit_step, lower
 from klingel.scenario import Scenario, Strategy
 from klingel.study import robustness_output as output
 from klingel.study.folder import conclude, study_folder
@@ -125,9 +125,13 @@ def plan_of(
 
 
 def recorded(scenario: Scenario) -> Scenario:
-    """The scenario with nothing recorded beyond what is assessed: 500 Hz if the step divides it, no energy."""
-    interval = max(1, int(INTERVAL / scenario.step * (1.0 + 1e-9))) * scenario.step
-    return scenario.replace(record_interval=interval, energy=False)
+    """The scenario with nothing recorded beyond what is assessed: 500 Hz if the step divides it, no energy.
+
+    Its steps are explicit: halved where they would be implicit, which costs more.
+    """
+    step = explicit_step(scenario.vehicle, scenario.speed, scenario.step)
+    interval = max(1, int(INTERVAL / step * (1.0 + 1e-9))) * step
+    return scenario.replace(step=step, record_interval=interval, energy=False)
 
 
 def run(
@@ -150,7 +154,7 @@ def run(
     Runs that derail, or cannot begin, are rows with their outcome.
 
     Args:
-        scenario: through one curve; its step is kept.
+        scenario: through one curve; its step is kept, or halved until it is explicit (`klingel.lower.explicit_step`).
         out: folder to write to; made if missing.
         runs: drawn ones; a study of more runs in the same folder goes on with those that are there.
         seed: of the draws; left_out: inputs that this strategy does not feel.
