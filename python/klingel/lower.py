@@ -25,8 +25,8 @@ HOLD_FREQUENCY = 0.1
 
 IMPLICIT_RATE, IMPLICIT_RATE_FREE = 25e3, 35e3
 """Speed below which steps are implicit, over the step [m/s2]: with solid wheelsets and with independently rotating
-wheels. The spin of a free wheel of 45 kg m2 has the rate 87e3/V 1/s in an arc at 300 mm of cant deficiency and a friction
-of 0.5, and explicit steps h are stable below 2.78/h; on straight track both kinds are from 21e3 h on."""
+wheels. The spin of a free wheel of 45 kg m2 has the rate 87e3/V 1/s in an arc at 300 mm of cant deficiency and a
+friction of 0.5, and explicit steps h are stable below 2.78/h; on straight track both kinds are from 21e3 h on."""
 
 Spec = dict[str, Any]
 Point = list[float]
