@@ -114,7 +114,7 @@ class Sensors:
         return control | {
             "blocks": chains["blocks"] + [_reading(block, told) for block in control["blocks"]],
             "commands": [_reading(command, told) for command in control["commands"]],
-            "probes": [_reading(probe, told) for probe in control["probes"]] + chains["probes"],
+            "probes": [_reading(probe, told) for probe in control.get("probes", ())] + chains["probes"],
         }
 
     def believed(self, s: float) -> float:

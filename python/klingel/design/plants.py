@@ -93,7 +93,7 @@ def plant_loop(scenario: Scenario, kind: Literal["steering", "motors"]) -> Respo
     >>> import klingel as kl
     >>> vehicle = kl.library.vehicle("mechatronic_irw")
     >>> scenario = kl.Scenario(vehicle, kl.Track.straight("1 km"), speed="176 km/h", control=kl.control.IRWLike())
-    >>> bool(abs(plant_loop(scenario, "motors")([30.0])[0]) > 0.9)
+    >>> bool(abs(plant_loop(scenario, "motors")([4.0])[0]) > 1.0)
     True
     """
     strategy, vehicle, speed = scenario.control, scenario.vehicle, scenario.speed

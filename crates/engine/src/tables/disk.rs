@@ -71,14 +71,15 @@ fn tables(folder: &Path) -> io::Result<Vec<(PathBuf, u64)>> {
     Ok(found.into_iter().map(|(_, path, size)| (path, size)).collect())
 }
 
-/// Name, size in bytes and whether the check sum is right, of every table of a folder.
+/// Name, size in bytes and whether the check sum is right, of every table of a folder; another process may remove some
+/// meanwhile, which then do not count.
 pub fn check(folder: &Path) -> Vec<(String, u64, bool)> {
     let look = |(path, size): (PathBuf, u64)| {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let whole = read(folder, &name).is_some();
-        (name, size, whole)
+        (whole || path.exists()).then_some((name, size, whole))
     };
-    tables(folder).unwrap_or_default().into_iter().map(look).collect()
+    tables(folder).unwrap_or_default().into_iter().filter_map(look).collect()
 }
 
 fn prune(folder: &Path) -> io::Result<()> {
