@@ -3,7 +3,6 @@ Differential speed control and yaw-moment control of Perez et al. (2004), with a
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -12,14 +11,10 @@ from klingel.control.basics import SPEED, SPEED_GRID, WHEELSETS, Timing, Wheelse
 from klingel.control.common import (
     FAR,
     Plant,
-    command_steering,
     database_curvature,
-    database_curve,
-    gyroscopic_moment,
     pair_feedback,
     sense_inertia,
     speed_difference,
-    steering_feedforward,
 )
 from klingel.control.diagram import Diagram
 from klingel.control.discrete import lead, notch
@@ -27,6 +22,7 @@ from klingel.control.driven import motors_of
 from klingel.control.feedforward import ContactDesign
 from klingel.control.fit import misfits
 from klingel.control.motors import Motors, command_motors
+from klingel.control.steering import steer_to_no_moment
 from klingel.control.traction import Traction
 from klingel.errors import Problem
 
@@ -116,7 +112,17 @@ class SolidLike:
             self._speed_error(d, plant, wheelset, track)
         for wheelset in WHEELSETS:
             self._speed_loop(d, plant, motors, wheelset)
-            self._yaw_moment_loop(d, plant, wheelset, track)
+            steer_to_no_moment(
+                d,
+                plant,
+                self.contact,
+                wheelset,
+                track,
+                self.timing,
+                frequency=self.yaw_frequency,
+                slow_speed=self.yaw_speed,
+                share=self.yaw_share,
+            )
         return d.spec()
 
     def _damping(self, plant: Plant, speed: float) -> float:
@@ -158,21 +164,3 @@ class SolidLike:
         reach, far = slope * self.reach, slope * (self.reach + FAR)
         excess = d.lookup(f"{name}.excess", aside, (-far, -reach, reach, far), (reach - far, 0.0, 0.0, far - reach))
         return d.product(name, excess, d.measure(SPEED))
-
-    def _yaw_moment_loop(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
-        """Integral control of the total yaw moment on the wheelset to what its spin needs, around the feedforward."""
-        rho, roll_rate = database_curve(d, plant, w, track, self.timing)
-        gyroscopic = gyroscopic_moment(d, plant, w, roll_rate)
-        feedforward = steering_feedforward(
-            d, plant, self.contact, w, rho=rho, roll_rate=roll_rate, gyroscopic=gyroscopic
-        )
-        total = d.delay(f"{w.name}.M.total", d.measure(f"{w.name}.yaw_moment"), self.timing.sensor_samples)
-        error = d.sum(f"{w.name}.M.error", {gyroscopic: 1.0, total: -1.0})
-        crossover = scheduled(
-            d, "yaw_loop.crossover", lambda v: 2.0 * math.pi * self.yaw_frequency * min(1.0, v / self.yaw_speed)
-        )
-        feedback = d.pi(
-            f"{w.name}.M.feedback", error, proportional=0.0, integral=crossover, limit=self.yaw_share * plant.moment_max
-        )
-        d.probe(f"{w.name}.steering_feedback", "N m", feedback)
-        command_steering(d, plant, w, d.sum(f"{w.name}.M", {feedforward: 1.0, feedback: 1.0}), self.timing)

@@ -3,10 +3,11 @@ Positive moments turn a wheelset, or a bogie, to the right."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
-from klingel.control.basics import SPEED, WHEELSETS, Timing, Wheelset
+from klingel.control.basics import SPEED, WHEELSETS, Timing, Wheelset, scheduled
 from klingel.control.common import (
     Plant,
     command_steering,
@@ -67,6 +68,33 @@ def expect_inertia(d: Diagram, plant: Plant, track: Track) -> None:
 def steer(d: Diagram, plant: Plant, w: Wheelset, moments: Mapping[str, Gain], timing: Timing) -> None:
     """The actuators of a wheelset make the sum of moments [N m]."""
     command_steering(d, plant, w, d.sum(f"{w.name}.M", moments), timing)
+
+
+def steer_to_no_moment(
+    d: Diagram,
+    plant: Plant,
+    contact: ContactDesign,
+    w: Wheelset,
+    track: Track,
+    timing: Timing,
+    *,
+    frequency: float,
+    slow_speed: float,
+    share: float,
+) -> None:
+    """M = feedforward + integral of 2 pi f (-H p - M_total): the total yaw moment on a wheelset to what its spin needs.
+
+    M_total is that of springs, dampers and actuators together. frequency: f [Hz], below `slow_speed` [m/s] in
+    proportion to the speed; share: of the largest moment of the actuators that the integral may add.
+    """
+    forward = database_feedforward(d, plant, contact, w, track, timing)
+    total = d.delay(f"{w.name}.M.total", d.measure(f"{w.name}.yaw_moment"), timing.sensor_samples)
+    error = d.sum(f"{w.name}.M.error", {forward.gyroscopic: 1.0, total: -1.0})
+    crossover = scheduled(d, "yaw_loop.crossover", lambda v: 2.0 * math.pi * frequency * min(1.0, v / slow_speed))
+    limit = share * plant.moment_max
+    feedback = d.pi(f"{w.name}.M.feedback", error, proportional=0.0, integral=crossover, limit=limit)
+    d.probe(f"{w.name}.steering_feedback", "N m", feedback)
+    steer(d, plant, w, {forward.moment: 1.0, feedback: 1.0}, timing)
 
 
 def relative_yaw(d: Diagram, name: str, actuator: Actuator, timing: Timing) -> str:

@@ -3,23 +3,19 @@ After Shen and Goodall (1997), as recalled; the loop of `SolidLike` with solid a
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from klingel.control.basics import WHEELSETS, Timing, Wheelset, check_positive, scheduled
+from klingel.control.basics import WHEELSETS, Timing, check_positive
 from klingel.control.common import (
     Plant,
-    command_steering,
-    database_curve,
-    gyroscopic_moment,
     sense_inertia,
-    steering_feedforward,
 )
 from klingel.control.diagram import Diagram
 from klingel.control.feedforward import ContactDesign
 from klingel.control.fit import misfits
+from klingel.control.steering import steer_to_no_moment
 from klingel.errors import Problem
 
 if TYPE_CHECKING:
@@ -68,22 +64,15 @@ class YawMoment:
         d = Diagram(sample_time=self.timing.sample_time)
         sense_inertia(d, plant, self.timing, frequency=self.sensor_frequency)
         for w in WHEELSETS:
-            self._loop(d, plant, w, track)
+            steer_to_no_moment(
+                d,
+                plant,
+                self.contact,
+                w,
+                track,
+                self.timing,
+                frequency=self.yaw_frequency,
+                slow_speed=self.yaw_speed,
+                share=self.yaw_share,
+            )
         return d.spec()
-
-    def _loop(self, d: Diagram, plant: Plant, w: Wheelset, track: Track) -> None:
-        """M = feedforward + integral of 2 pi f (-H p - M_total)."""
-        rho, roll_rate = database_curve(d, plant, w, track, self.timing)
-        gyroscopic = gyroscopic_moment(d, plant, w, roll_rate)
-        feedforward = steering_feedforward(
-            d, plant, self.contact, w, rho=rho, roll_rate=roll_rate, gyroscopic=gyroscopic
-        )
-        total = d.delay(f"{w.name}.M.total", d.measure(f"{w.name}.yaw_moment"), self.timing.sensor_samples)
-        error = d.sum(f"{w.name}.M.error", {gyroscopic: 1.0, total: -1.0})
-        crossover = scheduled(
-            d, "yaw_loop.crossover", lambda v: 2.0 * math.pi * self.yaw_frequency * min(1.0, v / self.yaw_speed)
-        )
-        limit = self.yaw_share * plant.moment_max
-        feedback = d.pi(f"{w.name}.M.feedback", error, proportional=0.0, integral=crossover, limit=limit)
-        d.probe(f"{w.name}.steering_feedback", "N m", feedback)
-        command_steering(d, plant, w, d.sum(f"{w.name}.M", {feedforward: 1.0, feedback: 1.0}), self.timing)
