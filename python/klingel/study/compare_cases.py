@@ -12,7 +12,6 @@ from typing import Any
 from klingel import control, library
 from klingel.errors import InputError
 from klingel.linear import parameters
-from klingel.lower import explicit_step
 from klingel.scenario import Scenario, Strategy
 from klingel.scenario.files import STRATEGIES, strategy
 from klingel.study.cases import STEP
@@ -46,8 +45,7 @@ class Contender:
 
     def through(self, case: Case) -> Scenario:
         """Its run through a curve; errors: InputError as Scenario."""
-        step = explicit_step(self.scenario.vehicle, case.speed, self.scenario.step)
-        return self.scenario.replace(track=case.track, speed=case.speed, step=step, duration=None)
+        return self.scenario.replace(track=case.track, speed=case.speed, duration=None)
 
     def straight(self, speed: float) -> Scenario:
         """The same on straight level track at a speed [m/s]; errors: InputError as Scenario."""
