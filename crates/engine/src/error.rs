@@ -81,7 +81,7 @@ impl fmt::Display for Running {
 fn unwired(what: &str, count: usize, nearest: &str) -> String {
     match count {
         0 => format!("the model has no {what}s"),
-        _ => format!("there is no such {what}; the nearest of its {count} is `{nearest}`"),
+        _ => format!("there is no such {what}; the nearest of {count} is `{nearest}`"),
     }
 }
 

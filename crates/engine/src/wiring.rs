@@ -91,7 +91,7 @@ mod tests {
         assert_eq!([edits("", "ab"), edits("ab", "ab"), edits("kitten", "sitting"), edits("ab", "b")], [2, 0, 3, 1]);
         let known = ["body.yaw", "bogie1.yaw", "bogie1.yaw_rate"].map(|name| (name.to_string(), "1"));
         let said = find(&known, "measures", "channel", "bogie1.yaw_rat").unwrap_err().to_string();
-        let told = "there is no such channel; the nearest of its 3 is `bogie1.yaw_rate`";
+        let told = "there is no such channel; the nearest of 3 is `bogie1.yaw_rate`";
         assert_eq!(said, format!("control measures `bogie1.yaw_rat`, but {told}"));
         let none = find(&[], "drives", "input", "x").unwrap_err().to_string();
         assert_eq!(none, "control drives `x`, but the model has no inputs");
