@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from klingel.contact import profile_of
 from klingel.drives import induction_point, operating_point, running_resistance, starting_point
+from klingel.errors import InputError
 from klingel.scenario import Scenario
 from klingel.track import CANT_BASE, Adhesion, Track
 from klingel.vehicle import Actuator, Drive, InductionDrive, Transmission, Vehicle
@@ -54,6 +55,9 @@ CIRCUIT = (
     "pole_pairs",
 )
 """Equivalent circuit of an induction motor."""
+
+CONTROL_KEYS = ("sample_time", "measurements", "blocks", "commands")
+"""What every control spec has."""
 
 SIDES = (("left", -1.0), ("right", 1.0))
 
@@ -124,7 +128,22 @@ def _control(scenario: Scenario) -> Spec | None:
         return None
     known = scenario.track if scenario.database is None else scenario.database
     spec = scenario.control.lower(scenario.vehicle, known, scenario.speed)
-    return None if spec is None else scenario.sensors.applied(spec)
+    if spec is None:
+        return None
+    _check_control(spec, type(scenario.control).__name__)
+    return scenario.sensors.applied(spec)
+
+
+def _check_control(spec: object, name: str) -> None:
+    """Errors: InputError naming a strategy whose `lower` gives no control spec."""
+    place, remedy = f"what {name}.lower() returns", "return spec() of a klingel.control.Diagram, or None for no control"
+    if not isinstance(spec, dict):
+        raise InputError.single(place, spec, "is no control spec", remedy=remedy)
+    if missing := [key for key in CONTROL_KEYS if key not in spec]:
+        raise InputError.single(place, None, f"has no {', '.join(missing)}", remedy=remedy)
+    time = spec["sample_time"]
+    if isinstance(time, bool) or not isinstance(time, (int, float)) or not time > 0.0:
+        raise InputError.single(f"sample_time in {place}", time, "is no time above zero [s]", remedy="give e.g. 1e-3")
 
 
 def implicit_below(vehicle: Vehicle, step: float) -> float:

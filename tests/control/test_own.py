@@ -22,7 +22,7 @@ import control as python_control
 import klingel as kl
 import own_strategy
 import three_forms
-from klingel.control import DiscreteController, PythonController
+from klingel.control import Diagram, DiscreteController, PythonController, Timing, low_pass
 from klingel.control.state_space import split
 from klingel.errors import InputError, RunCancelledError, SimulationError
 from klingel.lower import lower
@@ -230,11 +230,58 @@ def test_a_spec_does_not_run_without_its_controller() -> None:
         (lambda: python(commands=[]), "name at least one"),
         (lambda: scenario(python(sample_time=1.3e-3)), "does not divide"),
         (lambda: scenario(python(sample_time=0.04)), "too slow for `Stepped`"),
+        (
+            lambda: scenario(
+                DiscreteController(
+                    python_control.ss([], [], [], np.zeros((1, 1)), 0.04),
+                    measurements=MEASURED[:1],
+                    commands=COMMANDS[:1],
+                )
+            ),
+            "too slow for `controller`",
+        ),
+        (
+            lambda: scenario(type(blocks)(timing=Timing(0.04))),
+            r"0\.04: is too slow for `SpeedDifference`.*0\.033 s at most",
+        ),
+        (lambda: scenario(python(sample_time=5.0, commands=[], probes={"a": "1"}), 1.0), "longer than the run"),
+        (lambda: Timing("1 ms"), "control.timing.sample_time = '1 ms': is no number"),  # type: ignore[arg-type]
+        (lambda: Timing(0.0), "control.timing.sample_time = 0.0: must be positive"),
+        (lambda: Timing(1e-3, -1, 0), "sensor_samples = -1: is no number of samples"),
+        (lambda: Timing(1e-3, 1.5, 1), "sensor_samples = 1.5: is no number of samples"),  # type: ignore[arg-type]
+        (lambda: Diagram(sample_time=1e-3).delay("late", "x", -3), "late.samples = -3: is no number of samples"),
+        (lambda: low_pass(900.0, sample_time=1e-3), "frequency = 900.*less than 500 Hz"),
+        (lambda: lower(scenario(Lowered([]))), r"what Lowered.lower\(\) returns = \[\]: is no control spec"),
+        (lambda: lower(scenario(Lowered({"blocks": []}))), "has no sample_time, measurements, commands"),
+        (lambda: lower(scenario(Lowered(Diagram(sample_time=0.0).spec()))), "sample_time in what Lowered"),
     ],
 )
 def test_bad_declarations_are_refused_before_the_run(make: Any, word: str) -> None:
     with pytest.raises(InputError, match=word):
         make()
+
+
+class Lowered:
+    """A strategy that gives what it was made with."""
+
+    def __init__(self, given: Any) -> None:
+        self.given = given
+
+    def lower(self, *_: object) -> Any:
+        return self.given
+
+
+@pytest.mark.parametrize(
+    ("probes", "measured", "said"),
+    [
+        ({"bogie1.yaw": "rad"}, MEASURED, "control probe `bogie1.yaw` would replace the channel"),
+        ({"energy.drag": "J"}, MEASURED, "control probe `energy.drag` has a name that results keep"),
+        ({}, ["bogie1.yaw_rat"], "control measures `bogie1.yaw_rat`, but .* is `bogie1.yaw_rate`"),
+    ],
+)
+def test_wires_to_what_is_not_or_is_taken_are_refused_by_name(probes: Any, measured: Any, said: str) -> None:
+    with pytest.raises(SimulationError, match=said):
+        kl.simulate(scenario(python(probes=probes, measurements=measured), 0.01))
 
 
 def test_a_run_is_cancelled_from_within_its_controller_and_by_ctrl_c() -> None:

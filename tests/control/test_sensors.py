@@ -211,10 +211,16 @@ def test_problems_come_together() -> None:
         Sensors(gyro=Encoder(), seed=-1)  # type: ignore[arg-type]
     with pytest.raises(InputError, match=r"Sensors"):
         kl.Scenario(IRW, STRAIGHT, speed=30.0, sensors=Encoder())  # type: ignore[arg-type]
+    with pytest.raises(InputError) as caught:
+        Gyro(scale=-1.0, delay="1e9 s", hold="11 s")
+    assert {problem.key for problem in caught.value.problems} == {"scale", "delay", "hold"}
     late = Sensors(encoder=Encoder(delay="0.5 ms"), gyro=Gyro(hold="0.2 ms"), speed=Speedometer(delay="1 ms"))
     with pytest.raises(InputError) as caught:
         lower(kl.Scenario(IRW, STRAIGHT, speed=30.0, control=kl.control.IRWLike(), sensors=late))
     assert [problem.key for problem in caught.value.problems] == ["sensors.encoder.delay", "sensors.gyro.hold"]
+    counting = Sensors(encoder=Encoder.counting(pulses=1000, window="1 ms"))
+    with pytest.raises(InputError, match=r"encoder\.window = 0\.001: is less than two samples.*0\.002 s or more"):
+        lower(kl.Scenario(IRW, STRAIGHT, speed=30.0, control=kl.control.IRWLike(), sensors=counting))
 
 
 FILE = """

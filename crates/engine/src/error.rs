@@ -17,6 +17,8 @@ pub enum EngineError {
     Value { place: String, value: String, remedy: String },
     #[error("{place}: there is no {what} called `{name}`; known: {known}")]
     Unknown { place: String, what: &'static str, name: String, known: String },
+    #[error("control {does} `{name}`, but {}", unwired(what, *count, nearest))]
+    Unwired { does: &'static str, what: &'static str, name: String, count: usize, nearest: String },
     #[error(transparent)]
     Track(#[from] AlignmentError),
     #[error(transparent)]
@@ -72,6 +74,14 @@ impl fmt::Display for Running {
             left => write!(f, ", in a left-hand curve of {:.0} m", -1.0 / left)?,
         }
         write!(f, " with {:.0} mm of cant, {lateral:.2} m/s2 unbalanced", 1e3 * cant)
+    }
+}
+
+/// What there is in place of a channel or input that is not.
+fn unwired(what: &str, count: usize, nearest: &str) -> String {
+    match count {
+        0 => format!("the model has no {what}s"),
+        _ => format!("there is no such {what}; the nearest of {count} is `{nearest}`"),
     }
 }
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from klingel.control.diagram import Diagram
+from klingel.control.diagram import Diagram, check_samples
 from klingel.errors import InputError
 
 SPEED = "body.speed"
@@ -20,11 +20,19 @@ SPEED_GRID = tuple(float(v) for v in np.geomspace(5.0, 100.0, 25))
 
 @dataclass(frozen=True)
 class Timing:
-    """sample_time [s]; delays in samples: sensors of the signals fed back, computation of the commands."""
+    """sample_time [s]; delays in samples: sensors of the signals fed back, computation of the commands.
+
+    Errors: InputError for what is no time above zero, or no whole number of samples.
+    """
 
     sample_time: float = 1e-3
     sensor_samples: int = 1
     computation_samples: int = 1
+
+    def __post_init__(self) -> None:
+        check_positive(self, ("sample_time",), key="control.timing")
+        for name in ("sensor_samples", "computation_samples"):
+            check_samples(getattr(self, name), f"control.timing.{name}")
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from klingel.control.discrete import Section
+from klingel.errors import InputError
 
 Gain = float | str
 """A number, or the name of the signal that carries it."""
@@ -108,8 +109,9 @@ class Diagram:
         return self._add("rate_limit", name, input=signal, rising=rate, falling=rate)
 
     def delay(self, name: str, signal: str, samples: int) -> str:
-        """The signal some samples ago; the signal itself for none."""
-        return self._add("delay", name, input=signal, samples=samples) if samples else signal
+        """The signal some samples ago; the signal itself for none. Errors: InputError for what is no such number."""
+        check_samples(samples, f"{name}.samples")
+        return self._add("delay", name, input=signal, samples=int(samples)) if samples else signal
 
     def state_space(
         self,
@@ -187,3 +189,9 @@ class Diagram:
     def _add(self, kind: str, name: str, **values: Any) -> str:
         self._blocks.append({"kind": kind, "name": name, **values})
         return name
+
+
+def check_samples(samples: object, key: str) -> None:
+    """Errors: InputError for what is no whole number of samples, 0 or more."""
+    if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or samples < 0:
+        raise InputError.single(key, samples, "is no number of samples", remedy="give a whole number, 0 or more")

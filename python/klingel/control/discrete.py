@@ -35,12 +35,17 @@ def bilinear(
 ) -> Section:
     """The section of (n0 + n1 s + n2 s^2)/(d0 + d1 s + d2 s^2), coefficients lowest power first.
 
-    prewarp: frequency [rad/s] at which both responses agree exactly.
+    prewarp: frequency [rad/s] at which both responses agree exactly. Errors: InputError for one that is not between
+    zero and half the sample rate.
 
     >>> lag = bilinear((1.0, 0.0, 0.0), (1.0, 0.1, 0.0), sample_time=1e-3)
     >>> round(sum(lag.b) / (1.0 + sum(lag.a)), 12)   # the same steady state
     1.0
     """
+    if prewarp is not None and not 0.0 < prewarp * sample_time < math.pi * (1.0 - 1e-9):
+        remedy = f"give less than {0.5 / sample_time:g} Hz, half the sample rate, or sample faster"
+        message = "is no frequency of a filter sampled like this [Hz]"
+        raise InputError.single("frequency", prewarp / (2.0 * math.pi), message, remedy=remedy)
     k = 2.0 / sample_time if prewarp is None else prewarp / math.tan(0.5 * prewarp * sample_time)
     b = _substitute(numerator, k)
     a = _substitute(denominator, k)

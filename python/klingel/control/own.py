@@ -18,10 +18,6 @@ if TYPE_CHECKING:
     from klingel.track import Track
     from klingel.vehicle import Vehicle
 
-SAMPLES_A_PERIOD = 2.0
-"""Least number of samples in a period of the actuators' bandwidth: with fewer what they do to the vehicle comes back to
-the controller as another, slower motion (aliasing). Good control wants ten times as many."""
-
 Commands = Mapping[str, float] | Sequence[float]
 
 
@@ -92,7 +88,7 @@ class PythonController:
             if not callable(getattr(self.controller, method, None)):
                 remedy = "write a class with reset() and step(t, measurements)"
                 yield Problem("controller", self.controller, f"has no method {method}", remedy)
-        if not self.timing.sample_time > 0.0:
+        if not self.sample_time > 0.0:  # type: ignore[operator]
             yield Problem("sample_time", self.sample_time, "must be positive [s]", "give a value above zero")
         if not self._outputs:
             yield Problem("commands", self.commands, "are none", "name at least one command or probe")
@@ -106,11 +102,6 @@ class PythonController:
         """Its sampling; delays are its own affair."""
         assert isinstance(self.sample_time, float)
         return Timing(self.sample_time, 0, 0)
-
-    def problems(self, vehicle: Vehicle) -> Iterator[Problem]:
-        """Why it does not fit a vehicle."""
-        steers = any(command.endswith(".force") for command in self.commands)
-        yield from too_slow(self.name, self.timing.sample_time, vehicle if steers else None)
 
     def lower(self, vehicle: Vehicle, track: Track, speed: float) -> dict[str, Any]:
         """Measurements, one external block, commands and probes."""
@@ -183,12 +174,3 @@ def names(given: Sequence[str], key: str) -> tuple[str, ...]:
     if twice := [name for i, name in enumerate(given) if name in given[:i]]:
         raise InputError.single(key, twice[0], "is named twice", remedy="name it once")
     return tuple(given)
-
-
-def too_slow(name: str, sample_time: float, vehicle: Vehicle | None) -> Iterator[Problem]:
-    """Whether a controller is too slow for the actuators that it commands; a vehicle of None has none."""
-    steering = None if vehicle is None else vehicle.steering
-    if steering is not None and sample_time * steering.bandwidth * SAMPLES_A_PERIOD > 1.0:
-        least, good = (1.0 / (n * steering.bandwidth) for n in (SAMPLES_A_PERIOD, 10.0 * SAMPLES_A_PERIOD))
-        message = f"is too slow for `{name}`, which commands actuators of {steering.bandwidth:g} Hz [s]"
-        yield Problem("control.sample_time", sample_time, message, f"give {least:.2g} s at most, better {good:.1g} s")

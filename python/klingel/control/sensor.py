@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from statistics import NormalDist
 from typing import ClassVar, Self
@@ -12,6 +13,9 @@ from typing import ClassVar, Self
 from klingel.control.diagram import Diagram
 from klingel.errors import InputError, Problem
 from klingel.units import Quantity, to_si
+
+LONGEST = 10.0
+"""Longest delay and hold of a sensor [s]: each sample of a delay is a number in memory."""
 
 
 @dataclass(frozen=True, init=False)
@@ -22,7 +26,8 @@ class Sensor:
 
     bias, scale: of all sensors of the kind alike; bias_spread, scale_spread: standard deviations of what each has in
     addition, always the same for one seed; noise: standard deviation of white noise at the controller's sample time;
-    resolution: step of the numbers; delay, hold: [s], rounded to whole samples of the controller; 0 for none.
+    resolution: step of the numbers; delay, hold: [s], rounded to whole samples of the controller; 0 for none, 10 s at
+    most.
     Errors: InputError with every problem.
 
     >>> Encoder(noise="0.02 rad/s", delay="30 ms").delay
@@ -75,6 +80,11 @@ class Sensor:
                 continue
             if number < 0.0 and name not in ("bias", "scale"):
                 problems.append(Problem(name, value, "must not be negative", "give 0 or more"))
+            if name == "scale" and not number > -1.0:
+                message = "makes a sensor that reads nothing, or the opposite"
+                problems.append(Problem(name, value, message, "give more than -1; a bad sign is the controller's"))
+            if name in ("delay", "hold") and not number <= LONGEST:
+                problems.append(Problem(name, value, "is too long for a sensor [s]", f"give {LONGEST:g} s at most"))
             object.__setattr__(self, name, number)
         if problems:
             raise InputError(problems)
@@ -90,12 +100,16 @@ class Sensor:
         return 1.0 + self.scale + self.scale_spread * draw[0], self.bias + self.bias_spread * draw[1]
 
     def samples(self, name: str, sample_time: float) -> int:
-        """`delay` or `hold` in whole samples, 0 for none; errors: InputError for less than one sample."""
+        """`delay` or `hold` in whole samples, 0 for none."""
         time: float = getattr(self, name)
-        if 0.0 < time < sample_time * (1.0 - 1e-9):
-            remedy = f"give 0, or {sample_time:g} s and more"
-            raise InputError.single(name, time, "is less than a sample of the controller [s]", remedy=remedy)
         return round(time / sample_time)
+
+    def timing_problems(self, sample_time: float) -> Iterator[Problem]:
+        """Why it does not fit the sample time [s] of a controller."""
+        for name in ("delay", "hold"):
+            if 0.0 < getattr(self, name) < sample_time * (1.0 - 1e-9):
+                remedy = f"give 0, or {sample_time:g} s and more"
+                yield Problem(name, getattr(self, name), "is less than a sample of the controller [s]", remedy)
 
     def put(self, d: Diagram, channel: str, seed: int) -> str:
         """Adds the blocks of the sensor of a channel; the signal that it gives, the channel itself without error."""
@@ -137,6 +151,15 @@ class Encoder(Sensor):
         if problems:
             raise InputError(problems)
         return cls(resolution=2.0 * math.pi / (pulses * time), hold=time, delay=0.5 * time)
+
+    def timing_problems(self, sample_time: float) -> Iterator[Problem]:
+        """As of any sensor; of one that counts, whose hold and delay are the window and half of it, by the window."""
+        if self.hold > 0.0 and self.delay == 0.5 * self.hold:
+            if self.hold < 2.0 * sample_time * (1.0 - 1e-9):
+                remedy = f"count over {2.0 * sample_time:g} s or more: the mean over a window is half of it late"
+                yield Problem("window", self.hold, "is less than two samples of the controller [s]", remedy)
+        else:
+            yield from super().timing_problems(sample_time)
 
 
 class Gyro(Sensor):

@@ -139,11 +139,7 @@ class Sensors:
 
     def _timing_problems(self, sample_time: float) -> Iterator[Problem]:
         for name, sensor in self.kinds():
-            for key in ("delay", "hold"):
-                try:
-                    sensor.samples(key, sample_time)
-                except InputError as error:
-                    yield from error.within(f"sensors.{name}").problems
+            yield from InputError(sensor.timing_problems(sample_time)).within(f"sensors.{name}").problems
 
 
 def _reading(item: Any, told: Mapping[str, str]) -> Any:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from klingel.control.basics import Timing
 from klingel.control.diagram import Diagram
-from klingel.control.own import names, too_slow
+from klingel.control.own import names
 from klingel.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -131,11 +131,6 @@ class DiscreteController:
     def timing(self) -> Timing:
         """Its sampling; delays are among its states."""
         return Timing(float(self.system.dt), 0, 0)
-
-    def problems(self, vehicle: Vehicle) -> Iterator[Problem]:
-        """Why it does not fit a vehicle."""
-        steers = any(command.endswith(".force") for command in self.commands)
-        yield from too_slow(self.name, self.timing.sample_time, vehicle if steers else None)
 
     def _split(self) -> Split:
         return split(*(np.asarray(getattr(self.system, key), dtype=float) for key in "ABCD"))

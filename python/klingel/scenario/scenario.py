@@ -14,7 +14,7 @@ import numpy as np
 
 from klingel.contact import DRY_AND_CLEAN, STANDARD, CreepOptions, Profile
 from klingel.contact.checks import Kind, kind_problems
-from klingel.control import Sensors, Traction
+from klingel.control import Sensors, Timing, Traction
 from klingel.errors import InputError, Problem, nearest
 from klingel.track import Adhesion, Track
 from klingel.units import Quantity, to_si
@@ -36,6 +36,10 @@ RUN_OUT = 2.0
 MISMATCH_MAX = 0.01
 """Largest difference of the radii of two wheels of a wheelset [m]: contact tables keep the nominal radius, half of this
 is one per cent of it. Workshops turn wheels of one axle to within some tenths of a millimetre."""
+
+SAMPLES_A_PERIOD = 2.0
+"""Least number of samples in a period of the actuators' bandwidth: with fewer what they do to the vehicle comes back to
+the controller as another, slower motion (aliasing). Good control wants ten times as many."""
 
 
 IDEAL = Sensors()
@@ -260,6 +264,7 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
         yield Problem("creep_elements", scenario.creep_elements, "is no grid (along, across)", remedy)
     if scenario.step > 0.0:
         yield from _step_problems(scenario)
+    yield from _sampling_problems(scenario)
     yield from _run_problems(scenario)
 
 
@@ -299,14 +304,35 @@ def _step_problems(scenario: Scenario) -> Iterator[Problem]:
     """The step divides the controller's sample time and the record interval."""
     step, interval = scenario.step, scenario.record_interval
     timing = getattr(scenario.control, "timing", None)  # of the strategies that are sampled
-    if timing is not None and not timing.sample_time > 0.0:
-        remedy = "give a value above zero"
-        yield Problem("control.timing.sample_time", timing.sample_time, "must be positive [s]", remedy)
-    elif timing is not None and not _divides(step, timing.sample_time):
+    if isinstance(timing, Timing) and not _divides(step, timing.sample_time):
         message = f"does not divide the controller's sample time {timing.sample_time:g} s"
         yield Problem("step", step, message, f"give {_nearest_step(step, timing.sample_time, interval):g} s")
     elif interval > 0.0 and not _divides(step, interval):
         yield Problem("record_interval", interval, "is no multiple of the step", f"give a multiple of {step:g} s")
+
+
+def _sampling_problems(scenario: Scenario) -> Iterator[Problem]:
+    """A controller is quick enough for the actuators that it commands, in any case it acts within the run."""
+    strategy, vehicle = scenario.control, scenario.vehicle
+    timing = getattr(strategy, "timing", None)
+    if not isinstance(timing, Timing):
+        if timing is not None:
+            yield Problem("control.timing", timing, "is no sampling", "give klingel.control.Timing")
+        return
+    name, key = getattr(strategy, "name", type(strategy).__name__), "control.timing.sample_time"
+    commands = getattr(strategy, "commands", None)
+    steers = not isinstance(commands, tuple) or any(str(target).endswith(".force") for target in commands)
+    actuators = [each for each in (vehicle.steering, vehicle.secondary_steering) if each is not None and steers]
+    endless = scenario.duration is None and scenario.traction is None and not scenario.speed > 0.0
+    if actuators:
+        bandwidth = max(each.bandwidth for each in actuators)
+        least, good = (1.0 / (n * bandwidth) for n in (SAMPLES_A_PERIOD, 10.0 * SAMPLES_A_PERIOD))
+        if timing.sample_time > least * (1.0 + 1e-9):
+            message = f"is too slow for `{name}`: the vehicle's actuators have {bandwidth:g} Hz [s]"
+            yield Problem(key, timing.sample_time, message, f"give {least:.2g} s at most, better {good:.1g} s")
+    elif not endless and timing.sample_time > scenario.end_time > 0.0:
+        remedy = f"give {scenario.end_time:.3g} s at most"
+        yield Problem(key, timing.sample_time, f"is longer than the run of `{name}` [s]", remedy)
 
 
 def _divides(part: float, whole: float) -> bool:

@@ -63,6 +63,10 @@ pub(super) fn compile(spec: &ControlSpec) -> Result<Diagram, ControlError> {
             return Err(ControlError::Duplicate { name: c.target.clone() });
         }
     }
+    let mut probed = HashSet::new();
+    if let Some(twice) = spec.probes.iter().find(|p| !probed.insert(&p.channel)) {
+        return Err(ControlError::Probe { name: twice.channel.clone(), taken: "is recorded twice" });
+    }
     let slot_of = |place: &str, signal: &str| names.slot(place, signal);
     let commands = spec.commands.iter().map(|c| slot_of(&format!("command `{}`", c.target), &c.signal));
     let probes = spec.probes.iter().map(|p| slot_of(&format!("probe `{}`", p.channel), &p.signal));
@@ -98,15 +102,17 @@ fn compile_block(spec: &BlockSpec, names: &Names) -> Result<Block, ControlError>
             let filter = compile_state_space(block, sizes, [a, b, c, d])?;
             Block::StateSpace { inputs: names.slots(&place, inputs)?, filter }
         }
-        BlockSpec::Pi { input, proportional, integral, lower, upper, .. } => Block::Pi(Pi {
-            input: slot(input)?,
-            proportional: operand(proportional)?,
-            rate: operand(integral)?,
-            lower: lower.as_ref().map(operand).transpose()?,
-            upper: upper.as_ref().map(operand).transpose()?,
-        }),
+        BlockSpec::Pi { input, proportional, integral, lower, upper, .. } => {
+            let [lower, upper] = [lower, upper].map(|limit| limit.as_ref().map(operand).transpose());
+            let (lower, upper) = (lower?, upper?);
+            in_order(block, lower.as_ref(), upper.as_ref())?;
+            let (proportional, rate) = (operand(proportional)?, operand(integral)?);
+            Block::Pi(Pi { input: slot(input)?, proportional, rate, lower, upper })
+        }
         BlockSpec::Saturation { input, lower, upper, .. } => {
-            Block::Saturation { input: slot(input)?, lower: operand(lower)?, upper: operand(upper)? }
+            let (lower, upper) = (operand(lower)?, operand(upper)?);
+            in_order(block, Some(&lower), Some(&upper))?;
+            Block::Saturation { input: slot(input)?, lower, upper }
         }
         BlockSpec::RateLimit { input, rising, falling, .. } => Block::RateLimit {
             input: slot(input)?,
@@ -151,8 +157,25 @@ fn not_negative(block: &str, what: &'static str, x: f64) -> Result<f64, ControlE
     if x.is_finite() && x >= 0.0 { Ok(x) } else { Err(bad(block, what, x, "give zero or a finite number above")) }
 }
 
+/// Two limits that are numbers; those that are signals may cross in a run.
+fn in_order(block: &str, lower: Option<&Operand>, upper: Option<&Operand>) -> Result<(), ControlError> {
+    match (lower, upper) {
+        (Some(Operand::Number(lower)), Some(Operand::Number(upper))) if lower > upper => {
+            Err(bad(block, "lower", format!("{lower}, above upper = {upper}"), "exchange the limits"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A quarter of an hour at 1 kHz: each sample of a delay is a number in memory.
+const SAMPLES_MOST: usize = 1_000_000;
+
 fn counted(block: &str, samples: usize) -> Result<usize, ControlError> {
-    if samples > 0 { Ok(samples) } else { Err(bad(block, "samples", 0, "give at least 1, or leave the block out")) }
+    match samples {
+        0 => Err(bad(block, "samples", 0, "give at least 1, or leave the block out")),
+        1..=SAMPLES_MOST => Ok(samples),
+        _ => Err(bad(block, "samples", samples, "give at most 1000000")),
+    }
 }
 
 fn some<'a>(block: &str, outputs: &'a [String]) -> Result<&'a [String], ControlError> {

@@ -175,6 +175,12 @@ mod tests {
             (r#"{"kind": "sum", "name": "out", "terms": [{"signal": "x"}]}"#, "`x`"),
             (r#"{"kind": "sum", "name": "out", "terms": []}, {"kind": "sum", "name": "out", "terms": []}"#, "twice"),
             (r#"{"kind": "delay", "name": "out", "input": "v", "samples": 0}"#, "samples"),
+            (r#"{"kind": "delay", "name": "out", "input": "v", "samples": 1000000000000}"#, "at most 1000000"),
+            (r#"{"kind": "saturation", "name": "out", "input": "v", "lower": 1, "upper": -1}"#, "above upper = -1"),
+            (
+                r#"{"kind": "pi", "name": "out", "input": "v", "proportional": 1, "integral": 1, "lower": 2, "upper": 1}"#,
+                "above upper = 1",
+            ),
             (r#"{"kind": "lookup", "name": "out", "input": "v", "x": [1, 1], "y": [0, 0]}"#, "increasing"),
             (r#"{"kind": "quantise", "name": "out", "input": "v", "step": 0}"#, "step"),
             (r#"{"kind": "noise", "name": "out", "std": -1, "seed": 0}"#, "std"),
@@ -193,6 +199,14 @@ mod tests {
             let error = controller(blocks).unwrap_err().to_string();
             assert!(error.contains(word), "{error}");
         }
+    }
+
+    #[test]
+    fn a_probe_is_recorded_once() {
+        let json = r#"{"sample_time": 0.001, "measurements": ["v"], "blocks": [], "commands": [], "probes": [
+            {"channel": "u", "unit": "V", "signal": "v"}, {"channel": "u", "unit": "V", "signal": "v"}]}"#;
+        let error = Controller::compile(&serde_json::from_str(json).unwrap()).unwrap_err().to_string();
+        assert_eq!(error, "control probe `u` is recorded twice; give it another name");
     }
 
     #[test]

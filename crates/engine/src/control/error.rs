@@ -15,6 +15,8 @@ pub enum ControlError {
          add it to `measurements` or move its block forward"
     )]
     UnknownSignal { place: String, signal: String },
+    #[error("control probe `{name}` {taken}; give it another name")]
+    Probe { name: String, taken: &'static str },
     #[error("control block `{block}`: {what} is {value}; {remedy}")]
     Value { block: String, what: &'static str, value: String, remedy: &'static str },
     #[error("control expects {expected} measurements and was given {given}; pass one value a name, in order")]
