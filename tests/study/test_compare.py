@@ -44,8 +44,13 @@ class Mine:
     def lower(self, vehicle, track, speed):
         return control.IRWLike(frequency=self.frequency).lower(vehicle, track, speed)
 
+class Fails(Mine):
+    def problems(self, vehicle):
+        raise KeyError("mass")
+
 ready = Mine(0.9)
 other = 3
+text = "irw_like"
 '''
 
 
@@ -117,6 +122,12 @@ def test_the_vehicle_is_the_first_that_a_strategy_fits() -> None:
         (["irw_like:frequency"], "'frequency' sets nothing"),
         (["{}:Nine"], "did you mean 'Mine'"),
         (["{}:other"], "is no strategy"),
+        (["{}:text"], "is no strategy"),
+        (["{}:Zzz"], "known: Fails, Mine, ready"),
+        (["{}:Fails"], "mechatronic_irw: control = 'Fails': fails when asked whether it fits: KeyError: 'mass'"),
+        (["{}:Fails:vehicle=trailed_irw"], "mend its method problems(vehicle)"),
+        (["irw_like:timing=5,timing.sample_time=1e-3"], "'timing.sample_time' is given twice"),
+        (["irw_like:timing.sample_time=1e-3,timing=5"], "'timing' is given twice"),
         (["{}:Mine:gain=2"], "known: frequency"),
         (["{}:ready:frequency=2"], "takes no parameters"),
         (["nowhere.py:Mine"], "no such file"),
@@ -126,6 +137,38 @@ def test_the_vehicle_is_the_first_that_a_strategy_fits() -> None:
 def test_bad_strategies_are_refused_before_anything_runs(mine: Path, texts: list[str], said: str) -> None:
     with pytest.raises(InputError, match=re.escape(said)):
         contenders([text.format(mine) for text in texts], FIRST)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [(control.IRWLike, "make one of it: IRWLike()"), ("irw_like", "is a text, no strategy"), (3, "is no strategy")],
+)
+def test_a_scenario_takes_objects_as_control(given: object, said: str) -> None:
+    with pytest.raises(InputError, match=re.escape(said)):
+        kl.Scenario(kl.library.vehicle("mechatronic_irw"), FIRST.track, speed=30.0, control=given)
+    if not isinstance(given, str):
+        with pytest.raises(InputError, match=re.escape(said)):
+            contenders({"one": given}, FIRST)
+
+
+class Nothing:
+    """Commands nothing."""
+
+    def reset(self) -> None: ...
+
+    def step(self, t: float, measurements: dict[str, float]) -> dict[str, float]:
+        return {}
+
+
+def test_the_vehicle_has_the_inputs_that_a_strategy_commands() -> None:
+    def of(command: str, sample_time: str) -> control.PythonController:
+        return control.PythonController(Nothing(), sample_time=sample_time, measurements=[], commands=[command])
+
+    assert made_for(of("bogie1.yaw_actuator_left.force", "2 ms")).name == "actuated_coach"
+    with pytest.raises(InputError, match=r"fits no vehicle of the library. mechatronic_irw: .* too slow"):
+        contenders({"slow": of("bogie1.wheelset1.actuator_left.force", "100 ms")}, FIRST)
+    with pytest.raises(InputError, match=r"mechatronic_irw: it has no input `bogie1.wing`"):
+        made_for(of("bogie1.wing", "2 ms"))
 
 
 def test_a_file_imports_its_neighbours(mine: Path, tmp_path: Path) -> None:
@@ -223,6 +266,20 @@ def test_bad_controllers_do_not_stop_the_rest(simulated, undrawn, mine, tmp_path
     assert row["outcome"] == "no run: ZeroDivisionError: too long for me"
     assert np.isnan(row["y_max_mm"])
     assert "too long for me" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_run_that_ends_at_once_has_its_outcome(simulated, undrawn, tmp_path, monkeypatch):
+    working = result.simulate
+
+    def simulate(scenario, *, progress):
+        series = working(scenario, progress=progress).isel(time=slice(1))
+        return series.assign_attrs(outcome="controller failed: `Mine` raised ValueError, at 0.000 s")
+
+    monkeypatch.setattr(result, "simulate", simulate)
+    done = compare(["passive"], curves=[800], out=tmp_path / "out", console=QUIET)
+    assert list(done.table["outcome"]) == ["controller failed: `Mine` raised ValueError, at 0.000 s"]
+    assert list(done.failed) == ["passive_R800"]
+    assert "controller failed" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
 
 def test_nothing_finished_still_writes_the_page(simulated, undrawn, tmp_path, monkeypatch):

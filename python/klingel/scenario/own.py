@@ -36,14 +36,21 @@ def own(name: str, folder: Path) -> Any:
         raise InputError.single("control.strategy", name, "has no such file", remedy=f"check the path {path}")
     module = _run(path.resolve(), name)
     if not hasattr(module, wanted):
-        known = [word for word, value in vars(module).items() if callable(getattr(value, "lower", None))]
+        known = [word for word, value in vars(module).items() if _of_the_file(word, value, module.__name__)]
         remedy = nearest(wanted, known) if known else "give it a class with a method lower(vehicle, track, speed)"
         raise InputError.single("control.strategy", name, "is not in that file", remedy=remedy)
     found = getattr(module, wanted)
-    if not callable(getattr(found, "lower", None)):
+    if isinstance(found, str) or not callable(getattr(found, "lower", None)):
         remedy = "give it a method lower(vehicle, track, speed)"
         raise InputError.single("control.strategy", name, "is no strategy", remedy=remedy)
     return found
+
+
+def _of_the_file(word: str, value: object, module: str) -> bool:
+    """Whether a name stands for a strategy that is written in the module: no text, no import, nothing private."""
+    if word.startswith("_") or isinstance(value, str) or not callable(getattr(value, "lower", None)):
+        return False
+    return not isinstance(value, type) or value.__module__ == module
 
 
 def made(kind: Any, name: str, values: dict[str, Any]) -> Any:

@@ -16,6 +16,7 @@ from klingel.contact import DRY_AND_CLEAN, STANDARD, CreepOptions, Profile
 from klingel.contact.checks import Kind, kind_problems
 from klingel.control import Sensors, Timing, Traction
 from klingel.errors import InputError, Problem, nearest
+from klingel.scenario.fit import misfits, no_strategy
 from klingel.track import Adhesion, Track
 from klingel.units import Quantity, to_si
 from klingel.vehicle import Vehicle
@@ -222,6 +223,9 @@ def _is_grid(elements: object) -> bool:
 
 
 def _problems(scenario: Scenario) -> Iterator[Problem]:
+    if (problem := no_strategy(scenario.control)) is not None:  # the checks below ask the strategy
+        yield problem
+        return
     positive = {"friction": "1", "gauge": "m", "step": "s", "record_interval": "s", "duration": "s"}
     for key, unit in positive.items():
         value = getattr(scenario, key)
@@ -238,7 +242,7 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
     if not isinstance(scenario.database, Track | None):
         yield Problem("database", scenario.database, "is no track", "give a klingel.Track, or None")
     yield from _along_track_problems(scenario)
-    yield from getattr(scenario.control, "problems", _fits)(scenario.vehicle)
+    yield from misfits(scenario.control, scenario.vehicle)
     if not abs(scenario.rail_inclination) <= 0.1:
         yield Problem(
             "rail_inclination", scenario.rail_inclination, "is too steep", "give a slope such as 1/40 = 0.025"
@@ -266,11 +270,6 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
         yield from _step_problems(scenario)
     yield from _sampling_problems(scenario)
     yield from _run_problems(scenario)
-
-
-def _fits(_: Vehicle) -> Iterator[Problem]:
-    """Of a strategy that does not say what vehicle it is made for."""
-    return iter(())
 
 
 def _along_track_problems(scenario: Scenario) -> Iterator[Problem]:

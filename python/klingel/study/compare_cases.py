@@ -12,8 +12,10 @@ from typing import Any
 from klingel import control, library
 from klingel.errors import InputError
 from klingel.linear import parameters
+from klingel.lower import lower
 from klingel.scenario import Scenario, Strategy
 from klingel.scenario.files import STRATEGIES, strategy
+from klingel.scenario.fit import misfits, no_strategy
 from klingel.study.cases import STEP
 from klingel.study.compare_curves import value_of
 from klingel.track import Track
@@ -126,9 +128,8 @@ def _contender(name: str, what: object, first: Case, vehicle: str | Vehicle | No
 
 def _scenario(what: object, first: Case, vehicle: str | Vehicle | None, settings: Mapping[str, Any]) -> Scenario:
     """A strategy on the given vehicle, or on the one it is made for."""
-    if what is not None and not callable(getattr(what, "lower", None)):
-        remedy = "give a text, a Strategy, None or a Scenario"
-        raise InputError.single("strategies", what, "is no strategy", remedy=remedy)
+    if (problem := no_strategy(what)) is not None:
+        raise InputError([dataclasses.replace(problem, key="strategies")])
     steering: Strategy | None = what  # type: ignore[assignment]  # it has what a Strategy has
     chosen = made_for(steering) if vehicle is None else _vehicle(vehicle)
     step = {"step": STEP_SAFE} | dict(settings)
@@ -138,17 +139,44 @@ def _scenario(what: object, first: Case, vehicle: str | Vehicle | None, settings
 def made_for(steering: Strategy | None) -> Vehicle:
     """The vehicle of the library that a strategy is made for: the first that it says it fits.
 
-    A strategy that says nothing gets the mechatronic vehicle with independent wheels, as does one that fits none.
+    One of a user's own is also asked what it commands, which the vehicle must have as inputs; one that says nothing of
+    both gets the mechatronic vehicle with independent wheels.
+    Errors: InputError for one that fits none, with the reason of the first that has its inputs.
 
     >>> made_for(None).name, made_for(control.IRWLike()).name
     ('manchester_coach', 'mechatronic_irw')
     """
     if steering is None or isinstance(steering, control.Passive):
         return library.vehicle(COACH)
-    problems = getattr(steering, "problems", lambda _: ())
-    others = [name for name in library.names() if name not in VEHICLES]
-    tried = (library.vehicle(name) for name in (*VEHICLES, *others))
-    return next((each for each in tried if not list(problems(each))), library.vehicle(VEHICLES[0]))
+    near: list[str] = []
+    far: list[str] = []
+    for name in (*VEHICLES, *(name for name in library.names() if name not in VEHICLES)):
+        vehicle = library.vehicle(name)
+        against, missing = misfits(steering, vehicle), _missing(steering, vehicle)
+        if not against and not missing:
+            return vehicle
+        told = "; ".join(map(str, against)) or f"it has no input `{missing[0]}`"
+        (far if missing else near).append(f"{name}: {told}")
+    remedy = "mend that, or say which vehicle it is made for"
+    message = f"fits no vehicle of the library. {(near + far)[0]}"
+    raise InputError.single("strategies", type(steering).__name__, message, remedy=remedy)
+
+
+def _missing(steering: Strategy, vehicle: Vehicle) -> list[str]:
+    """Inputs that a strategy of a user's own commands and a vehicle does not have; those of the library know theirs."""
+    if type(steering) in STRATEGIES.values():
+        return []
+    track, speed = Track.straight("1 km"), 30.0
+    try:
+        spec = steering.lower(vehicle, track, speed)
+        commanded = [] if spec is None else [command["target"] for command in spec["commands"]]
+    except Exception:  # whatever a user's class does with a vehicle that it may not be made for; its run will say
+        return []
+    parts = lower(Scenario(vehicle, track, speed=speed))
+    inputs = {f"{each['name']}.force" for each in parts["actuators"]}
+    inputs |= {f"{each['name']}.{end}_voltage" for each in parts["drives"] for end in ("armature", "field")}
+    inputs |= {f"{each['name']}.torque_command" for each in parts["induction_drives"]}
+    return [target for target in commanded if target not in inputs]
 
 
 def slug(name: str) -> str:
@@ -172,11 +200,21 @@ def _named(text: str) -> tuple[str, str]:
     return (found.group(1), found.group(2)) if found else (text, text)
 
 
-def split(text: str) -> tuple[str, dict[str, Any]]:
-    """What a text names, and its parameters; dots in a key make tables.
+def strategy_of(text: str, *, key: str) -> Strategy:
+    """The strategy of a text `what[:key=value,...]`; errors: InputError, at `key`.
+
+    >>> strategy_of("irw_like:curvature=database,frequency=1.2", key="control").frequency
+    1.2
+    """
+    head, given = split(text, key=key)
+    return strategy({"strategy": head, **given})
+
+
+def split(text: str, *, key: str = "strategies") -> tuple[str, dict[str, Any]]:
+    """What a text names, and its parameters; dots in a parameter make tables. key: where errors say it stands.
 
     Raises:
-        InputError: a parameter without value.
+        InputError: a parameter without value, given twice, or both a value and a table.
 
     Example:
         >>> split("mine.py:Mine:gain=2,timing.sample_time=2 ms")
@@ -186,13 +224,16 @@ def split(text: str) -> tuple[str, dict[str, Any]]:
     head, tail = (found.group(1), found.group(2)) if found else (text, None)
     given: dict[str, Any] = {}
     for pair in (tail or "").split(",") if tail else ():
-        key, equals, value = pair.partition("=")
-        if not equals or not key.strip():
+        name, equals, value = pair.partition("=")
+        if not equals or not name.strip():
             remedy = "give parameters as key=value,key=value"
-            raise InputError.single("strategies", text, f"{pair!r} sets nothing", remedy=remedy)
-        *tables, last = key.strip().split(".")
+            raise InputError.single(key, text, f"{pair!r} sets nothing", remedy=remedy)
+        *tables, last = name.strip().split(".")
         place = given
         for table in tables:
-            place = place.setdefault(table, {})
+            place = place.setdefault(table, {}) if isinstance(place, dict) else place
+        if not isinstance(place, dict) or last in place:
+            remedy = "give each once, tables by their parts only: timing.sample_time=2 ms"
+            raise InputError.single(key, text, f"{name.strip()!r} is given twice", remedy=remedy)
         place[last] = value_of(value.strip())
     return head, given
