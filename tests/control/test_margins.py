@@ -68,7 +68,7 @@ def least(found: list[NDArray[np.complex128]]) -> tuple[float, float, float]:
     return min(m.gain for m in each), float(phase), 1e3 * min(delay_margin(L) for L in found)
 
 
-@pytest.mark.parametrize("speed", [108.0, 176.0, 265.0])
+@pytest.mark.parametrize("speed", [108.0, 140.0, 176.0, 216.0, 265.0])
 @pytest.mark.parametrize("name", STRATEGIES)
 def test_margins_on_the_full_vehicle(name: str, speed: float) -> None:
     """With room to the figures that are asked for: 2, 50 ms; 2, 45 degrees, 10 ms."""
@@ -100,6 +100,14 @@ def test_margins_with_induction_motors(speed: float) -> None:
 def test_straight_track_is_stable_at_any_conicity(name: str, conicity: float) -> None:
     for speed in (108.0, 176.0, 265.0):
         assert damping(replace(scenario(name, speed), "conicity", conicity)) > 0.04
+
+
+@pytest.mark.parametrize("name", STRATEGIES)
+def test_every_corner_of_conicity_and_friction_is_stable_on_the_straight_and_in_the_arcs(name: str) -> None:
+    found = kl.design.check(scenario(name, 108.0), conicities=(0.05, 0.4), frictions=(0.3, 0.5))
+    assert len(found.table) == 30
+    assert found.stable, found.words()
+    assert found.table["damping"].min() > 0.008
 
 
 @pytest.mark.parametrize("speed", [20.0, 45.0, 70.0])

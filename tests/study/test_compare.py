@@ -93,8 +93,7 @@ def test_strategies_from_python_and_scenario_files(tmp_path: Path) -> None:
     assert [c.scenario.vehicle.name for c in made] == ["manchester_coach", "mechatronic_irw", "mechatronic_irw"]
     assert {c.scenario.vehicle.body.mass for c in made} == {30e3}
     run = made[2].through(FIRST)
-    assert (run.friction, run.control.frequency, run.duration) == (0.3, 0.9, None)
-    assert (made[2].scenario.step, run.step) == (1e-3, 0.5e-3)  # explicit at that speed
+    assert (run.friction, run.control.frequency, run.step, run.duration) == (0.3, 0.9, 1e-3, None)
     assert (run.speed, run.track) == (FIRST.speed, FIRST.track)
     (case,) = curves([str(file)])
     assert (case.radius, case.track.name) == (900.0, "slow")

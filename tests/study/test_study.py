@@ -41,7 +41,7 @@ def test_scenarios_have_the_settings_of_the_study():
     irw = by_name["irw_like_R300"]
     assert (irw.friction, irw.rail, irw.rail_inclination, irw.creep_law) == (0.35, "60E1", 0.025, "table")
     assert irw.control.curvature == "gyro"
-    assert irw.step == 1e-3
+    assert irw.step == 0.5e-3  # 1 ms elsewhere
     assert by_name["solid_like_R300"].step == 0.5e-3
     assert by_name["passive_R300_mu025"].step == 1e-3
     assert by_name["irw_like_R300_database"].control.curvature == "database"

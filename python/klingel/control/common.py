@@ -109,10 +109,10 @@ def database_curvature(d: Diagram, name: str, track: Track, position: str) -> st
 
 def twist_of(track: Track) -> tuple[list[float], list[float]]:
     """Roll of the track per metre [rad/m] at arc lengths [m]; its steps at the ends of cant ramps are a metre long."""
-    places, values = [0.0], [0.0]
-    for start, segment in zip(track.starts, track.segments, strict=True):
-        slope = (segment.cant[1] - segment.cant[0]) / segment.length / CANT_BASE
-        if slope != values[-1] and start > 0.0:
+    slopes = [(segment.cant[1] - segment.cant[0]) / segment.length / CANT_BASE for segment in track.segments]
+    places, values = [0.0], slopes[:1]
+    for start, slope in zip(track.starts, slopes, strict=True):
+        if slope != values[-1]:
             places += [start - 0.5, start + 0.5]
             values += [values[-1], slope]
     return [*places, track.length], [*values, values[-1]]

@@ -34,7 +34,7 @@ SILENT = 1e-7
 """Largest |L| of a combination of commands that nothing feeds back, such as the mean of motors that are held."""
 
 LISTENED = (0.01, 0.1, 1.0, 5.0, 30.0)
-"""Frequencies at which a combination is heard for a loop [Hz]."""
+"""Frequencies at which a combination is heard for a loop, those below half the sample rate [Hz]."""
 
 SIDE = re.compile(r"(?<![a-z])(left|right)(?![a-z])")
 
@@ -187,7 +187,8 @@ def of_model(model: LinearModel) -> tuple[Loop, ...]:
     if model.sample_time is None:
         return ()
     found = _candidates([s.name.removesuffix(PUT_OUT) for s in model.states if s.name.endswith(PUT_OUT)])
-    heard = Closed(model, [weights for _, _, weights in found]).sensitivities(LISTENED)
+    listened = [f for f in LISTENED if f * model.sample_time < 0.5]
+    heard = Closed(model, [weights for _, _, weights in found]).sensitivities(listened)
     loud = [j for j in range(len(found)) if np.abs(heard[:, j, j] - 1.0).max() > SILENT]
     found = [found[j] for j in loud]
     closed = Closed(model, [weights for _, _, weights in found])

@@ -20,23 +20,23 @@ DARK = 3.0
 
 
 def errors_figure(table: pd.DataFrame) -> Figure:
-    """One panel a strategy: errors down, radii across, the largest displacement [mm] in colour and figures.
+    """One panel a strategy: errors down, curves across, the largest displacement [mm] in colour and figures.
 
-    table: columns `strategy`, `error`, `radius_m`, `y_max_mm`, `flange_contact`, `outcome`, `touched`.
+    table: columns `strategy`, `error`, `curve`, `y_max_mm`, `flange_contact`, `outcome`, `touched`.
     """
     names = list(dict.fromkeys(table["strategy"]))
-    errors, radii = list(dict.fromkeys(table["error"])), sorted(table["radius_m"].unique())
+    errors, curves = list(dict.fromkeys(table["error"])), list(dict.fromkeys(table["curve"]))
     columns = min(2, len(names))
     rows = -(-len(names) // columns)
-    size = (2.6 + 0.62 * len(radii) * columns + 0.3 * columns, 0.9 + rows * (0.55 + 0.3 * len(errors)))
+    size = (2.6 + 0.62 * len(curves) * columns + 0.3 * columns, 0.9 + rows * (0.55 + 0.3 * len(errors)))
     figure = Figure(figsize=size, layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
     norm, image = BoundaryNorm(LEVELS, 256, extend="max"), None
     for axis, name in zip(axes.flat, names, strict=False):
         of = table[table["strategy"] == name]
-        values = np.full((len(errors), len(radii)), np.nan)
+        values = np.full((len(errors), len(curves)), np.nan)
         for row in of.itertuples():
-            i, j = errors.index(row.error), radii.index(row.radius_m)
+            i, j = errors.index(row.error), curves.index(row.curve)
             failed = row.outcome != "completed"
             values[i, j] = np.nan if failed else row.y_max_mm
             words = "×" if failed else f"{row.y_max_mm:.1f}" if row.touched else f"({row.y_max_mm:.1f})"
@@ -47,14 +47,14 @@ def errors_figure(table: pd.DataFrame) -> Figure:
                 axis.plot([j - 0.42, j + 0.42], [i + 0.4, i + 0.4], color=colour, linewidth=1.5)
         image = axis.imshow(values, cmap="cividis_r", norm=norm, aspect="auto")
         axis.set_title(name, fontsize=9, loc="left")
-        axis.set_xticks(range(len(radii)), [f"{radius:.0f}" for radius in radii])
+        axis.set_xticks(range(len(curves)), curves)
         axis.set_yticks(range(len(errors)), errors)
         axis.tick_params(length=0, labelsize=8)
         axis.grid(visible=False)
     for axis in axes.flat[len(names) :]:
         axis.set_axis_off()
     for axis in axes[-1]:
-        axis.set_xlabel("radius of the curve [m]", fontsize=9)
+        axis.set_xlabel("curve (radius in m)", fontsize=9)
     assert image is not None
     bar = figure.colorbar(image, ax=axes, ticks=list(LEVELS), shrink=0.9)
     bar.set_label("largest displacement of a wheelset [mm]; bold and underlined: flange contact", fontsize=8)

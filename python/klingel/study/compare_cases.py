@@ -12,7 +12,7 @@ from typing import Any
 from klingel import control, library
 from klingel.errors import InputError
 from klingel.linear import parameters
-from klingel.lower import explicit_step, lower
+from klingel.lower import lower
 from klingel.scenario import Scenario, Strategy
 from klingel.scenario.files import STRATEGIES, strategy
 from klingel.scenario.fit import misfits, no_strategy
@@ -47,8 +47,7 @@ class Contender:
 
     def through(self, case: Case) -> Scenario:
         """Its run through a curve; errors: InputError as Scenario."""
-        step = explicit_step(self.scenario.vehicle, case.speed, self.scenario.step)
-        return self.scenario.replace(track=case.track, speed=case.speed, step=step, duration=None)
+        return self.scenario.replace(track=case.track, speed=case.speed, duration=None)
 
     def straight(self, speed: float) -> Scenario:
         """The same on straight level track at a speed [m/s]; errors: InputError as Scenario."""

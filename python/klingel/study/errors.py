@@ -73,8 +73,8 @@ class Withstood:
 
     Attributes:
         out: folder with everything that was written.
-        table: one row a strategy, error and curve: `strategy`, `error`, `radius_m`, `FIGURES`; where an error touches
-            nothing that the strategy measures the figures are those without error and `touched` is False.
+        table: one row a strategy, error and curve: `strategy`, `error`, `curve`, `radius_m`, `FIGURES`; where an error
+            touches nothing that the strategy measures the figures are those without error and `touched` is False.
         elapsed: wall time [s].
     """
 
@@ -167,5 +167,5 @@ def _rows(
             source = fault if touched or nothing is None else nothing
             for case in cases:
                 if (figures := done.get(_key(contender, source, case))) is not None:
-                    head = {"strategy": contender.name, "error": fault.words, "radius_m": case.radius}
-                    yield head | {"touched": touched, **figures}
+                    head = {"strategy": contender.name, "error": fault.words, "curve": case.track.name}
+                    yield head | {"radius_m": case.radius, "touched": touched, **figures}

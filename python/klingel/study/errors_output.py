@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from klingel.study.errors import Withstood
 
 COLUMNS = (
-    "strategy", "error", "radius_m", "touched", "y_max_mm", "y_curve_mm", "attack_angle_max_mrad",
+    "strategy", "error", "curve", "radius_m", "touched", "y_max_mm", "y_curve_mm", "attack_angle_max_mrad",
     "lateral_force_max_kN", "flange_contact", "outcome",
 )  # fmt: skip
 
@@ -81,9 +81,9 @@ def _robust(made: Withstood) -> pd.DataFrame:
 def _wide(rows: pd.DataFrame) -> pd.DataFrame:
     """Errors down, curves across; cells in words."""
     made: dict[str, list[str]] = {"error": list(dict.fromkeys(rows["error"]))}
-    for radius, column in rows.groupby("radius_m"):
+    for curve, column in rows.groupby("curve", sort=False):
         cells = {row.error: _cell(row) for row in column.itertuples()}
-        made[f"R = {radius:.0f} m [mm]"] = [cells.get(error, "-") for error in made["error"]]
+        made[f"{curve} [mm]"] = [cells.get(error, "-") for error in made["error"]]
     return pd.DataFrame(made)
 
 
