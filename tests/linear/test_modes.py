@@ -11,6 +11,7 @@ from scipy.linalg import expm
 
 import klingel as kl
 from klingel import cli
+from klingel.cli.scenario import scenario_of
 from klingel.errors import InputError
 from klingel.linear.blocks import eigen, eigenvalues, lives
 from klingel.linear.kinematics import Placement, UniformTrack, joint_jacobian
@@ -292,11 +293,22 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str], end: str) -
     assert rows.read_text().splitlines()[0] == "name,frequency,damping,real,imag,body,element"
 
 
+def test_strategies_have_parameters_and_bring_their_vehicle() -> None:
+    text = "irw_like:curvature=database,frequency=1.2"
+    made = scenario_of(None, None, "108 km/h", text, None, None)
+    assert made.vehicle.name == "mechatronic_irw"
+    assert (made.control.frequency, made.control.curvature) == (1.2, "database")
+    assert scenario_of(None, "trailed_irw", "30 m/s", "passive", None, None).vehicle.name == "trailed_irw"
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [
         (["--speed", "160 km/h"], "vehicle: is missing"),
         (["--vehicle", "manchester_coach"], "speed: is missing"),
+        (["--control", "irw_like"], "speed: is missing"),
+        (["--control", "irw_like:frequenzy=2", "--speed", "40 m/s"], "did you mean 'frequency'"),
+        (["--control", "irw_like:frequency", "--speed", "40 m/s"], "control = 'irw_like:frequency': 'frequency' sets"),
         (["--vehicle", "manchester_coach", "--speed", "40 m/s", "--out", "m.txt"], "end it in .html"),
         (["--vehicle", "manchester_coach", "--speed", "40 m/s", "--set", "conicity"], "give it as name=value"),
         (["--vehicle", "manchester_coach", "--speed", "40 m/s", "--without", "drive"], "yaw_damper"),

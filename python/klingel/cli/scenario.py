@@ -12,9 +12,11 @@ if TYPE_CHECKING:
     from klingel.scenario import Scenario
 
 File = Annotated[Path | None, typer.Argument(help="Scenario file (TOML); or give --vehicle and --speed.")]
-Vehicle = Annotated[str | None, typer.Option(help="Of the library, or a vehicle file.")]
+Vehicle = Annotated[
+    str | None, typer.Option(help="Of the library, or a vehicle file; default: what --control is made for.")
+]
 Speed = Annotated[str | None, typer.Option(help="Such as '160 km/h'; with a file, instead of its own.")]
-Control = Annotated[str | None, typer.Option(help="A strategy such as irw_like, or file.py:Name.")]
+Control = Annotated[str | None, typer.Option(help="A strategy: irw_like, irw_like:frequency=1.2, file.py:Name.")]
 Setting = Annotated[
     list[str] | None, typer.Option("--set", help="A number, such as conicity=0.2 or vehicle.body.mass='30 t'.")
 ]
@@ -31,28 +33,37 @@ def scenario_of(
     settings: list[str] | None,
     without: list[str] | None,
 ) -> Scenario:
-    """Of a file, or a vehicle at a speed on straight track, with single numbers set; errors: InputError."""
+    """Of a file, or a vehicle at a speed on straight track, with single numbers set; errors: InputError.
+
+    control: as in a comparison, `what[:key=value,...]`; without file and vehicle on the vehicle that it is made for.
+    """
     from klingel import library
     from klingel.errors import InputError
     from klingel.linear import parameters
     from klingel.scenario import Scenario
-    from klingel.scenario.files import strategy
     from klingel.track import Track
     from klingel.vehicle import Vehicle as Record
 
+    steering, record = None, None
+    if vehicle is not None and file is None:
+        record = Record.read(vehicle) if vehicle.endswith(".toml") else library.vehicle(vehicle)
+    if control is not None:
+        from klingel.study.compare_cases import made_for, strategy_of  # slow to import
+
+        steering = strategy_of(control, key="control")
+        record = made_for(steering) if record is None and file is None else record
     if file is not None:
         if vehicle is not None:
             raise InputError.single("vehicle", vehicle, "is given beside a scenario file", remedy="give one of the two")
         made = Scenario.read(file)
         made = made if speed is None else parameters.replace(made, "speed", speed)
-    elif vehicle is None or speed is None:
-        missing = "vehicle" if vehicle is None else "speed"
+    elif record is None or speed is None:
+        missing = "vehicle" if record is None else "speed"
         raise InputError.single(missing, None, "is missing", remedy="give a scenario file, or --vehicle and --speed")
     else:
-        record = Record.read(vehicle) if vehicle.endswith(".toml") else library.vehicle(vehicle)
         made = Scenario(record, Track.straight("1 km"), speed=speed)
-    if control is not None:
-        made = made.replace(control=strategy({"strategy": control}))
+    if steering is not None:
+        made = made.replace(control=steering)
     for table in without or ():
         made = made.replace(vehicle=_without(made.vehicle, table))
     for each in settings or ():
