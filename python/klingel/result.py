@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import os
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from concurrent.futures import TimeoutError as NotYet
 from pathlib import Path
@@ -162,7 +162,7 @@ def save(result: xr.Dataset, path: str | Path, *, rate: float | None = DISK_RATE
     """Write a run as NetCDF, whole or not at all.
 
     rate: of the samples in the file [Hz], None for all; samples are taken as they are, not filtered, and kept in
-    single precision, arc lengths in double.
+    single precision, arc lengths and what single precision cannot hold in double.
     The file has one variable per quantity and unit over (channel, time): `Q` holds the vertical force of every wheel,
     its coordinate `Q_of` their names. Errors: InputError for a rate that does not divide that of the result.
     """
@@ -171,7 +171,7 @@ def save(result: xr.Dataset, path: str | Path, *, rate: float | None = DISK_RATE
     packed = _pack(result, every)
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f"{path.name}.{os.getpid()}-{threading.get_ident()}.tmp")
-    encoding = {name: COMPRESSION | {"dtype": "f8" if name == "s" else "f4"} for name in packed.data_vars}
+    encoding = {name: COMPRESSION | {"dtype": _precision(name, each)} for name, each in packed.data_vars.items()}
     try:
         with _WRITING:
             packed.to_netcdf(part, engine="netcdf4", encoding=encoding)
@@ -208,6 +208,13 @@ def _every(result: xr.Dataset, rate: float | None) -> int:
         remedy = f"give {1.0 / interval:g} Hz over a whole number"
         raise InputError.single("rate", rate, "does not divide the rate of the result [Hz]", remedy=remedy)
     return round(every)
+
+
+def _precision(name: Hashable, values: xr.DataArray) -> str:
+    """Of a variable in the file: a controller may command numbers that single precision has not got."""
+    finite = values.to_numpy()
+    large = np.abs(finite, where=np.isfinite(finite), out=np.zeros_like(finite)).max(initial=0.0)
+    return "f8" if name == "s" or large > np.finfo(np.float32).max else "f4"
 
 
 def _pack(result: xr.Dataset, every: int) -> xr.Dataset:

@@ -74,6 +74,15 @@ def test_same_quantity_in_two_units_stays_apart(tmp_path: Path) -> None:
     xr.testing.assert_identical(kl.load(kl.save(both, tmp_path / "x.nc", rate=None)), both)
 
 
+@pytest.mark.filterwarnings("error")
+def test_numbers_beyond_single_precision_are_kept(tmp_path: Path) -> None:
+    values = np.array([0.0, 1e300, np.inf])
+    made = xr.Dataset(
+        {"a.command": ("time", values, {"units": "N"})}, {"time": [0.0, 1.0, 2.0]}, {"format": result.FORMAT}
+    )
+    assert kl.load(kl.save(made, tmp_path / "huge.nc", rate=None))["a.command"].values.tolist() == values.tolist()
+
+
 def test_a_failed_write_leaves_nothing(run: xr.Dataset, tmp_path: Path) -> None:
     path = tmp_path / "run.nc"
     path.write_text("before")

@@ -268,6 +268,20 @@ def test_bad_controllers_do_not_stop_the_rest(simulated, undrawn, mine, tmp_path
     assert "too long for me" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
 
+def test_a_run_that_ends_at_once_has_its_outcome(simulated, undrawn, tmp_path, monkeypatch):
+    working = result.simulate
+
+    def simulate(scenario, *, progress):
+        series = working(scenario, progress=progress).isel(time=slice(1))
+        return series.assign_attrs(outcome="controller failed: `Mine` raised ValueError, at 0.000 s")
+
+    monkeypatch.setattr(result, "simulate", simulate)
+    done = compare(["passive"], curves=[800], out=tmp_path / "out", console=QUIET)
+    assert list(done.table["outcome"]) == ["controller failed: `Mine` raised ValueError, at 0.000 s"]
+    assert list(done.failed) == ["passive_R800"]
+    assert "controller failed" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
 def test_nothing_finished_still_writes_the_page(simulated, undrawn, tmp_path, monkeypatch):
     def simulate(scenario, *, progress):
         raise RunCancelledError("no")

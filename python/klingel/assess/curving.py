@@ -18,6 +18,9 @@ from klingel.errors import InputError
 INTERVAL_MAX = 2e-3
 """Longest sample interval [s]: a wheelset rings on its contact springs near 180 Hz, and samples at 200 Hz, as files
 have them by default, fold that down to 20 Hz, where no filter removes it (5 % of the lateral force at R = 300 m)."""
+
+SAMPLES_MIN = 3
+"""Fewest samples of a run that can be assessed."""
 BEFORE_CURVE = 1.0
 """Maxima start this long before the curve [s]."""
 AFTER_CURVE = 3.0
@@ -159,9 +162,9 @@ def curving(result: xr.Dataset, *, vehicle: str | None = None) -> Assessment:
     """
     header = header_of(result)
     time = np.asarray(result["time"].values, dtype=np.float64)
-    if len(time) < 3:
+    if len(time) < SAMPLES_MIN:
         raise InputError.single(
-            "time", len(time), f"at least 3 samples are needed; the run's outcome: {header.outcome}"
+            "time", len(time), f"at least {SAMPLES_MIN} samples are needed; the run's outcome: {header.outcome}"
         )
     run = _Run(result, time, float(time[1] - time[0]))
     if run.interval > INTERVAL_MAX * (1.0 + 1e-6):

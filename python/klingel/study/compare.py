@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from klingel import result
 from klingel.assess import Assessment, curving
+from klingel.assess.curving import SAMPLES_MIN
 from klingel.plot.style import looks_of
 from klingel.study import compare_output as output
 from klingel.study.compare_cases import contenders, slug
@@ -35,10 +36,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Finished:
-    """What is kept in memory of one run; its time series are on disk."""
+    """What is kept in memory of one run; its time series are on disk.
 
-    assessment: Assessment
+    assessment: None of a run that ended before there was anything to assess; outcome: how it ended.
+    """
+
+    assessment: Assessment | None
     history: History | None
+    outcome: str
 
 
 @dataclass(frozen=True)
@@ -48,7 +53,7 @@ class Comparison:
     Attributes:
         out: folder with everything that was written.
         table: one row a strategy and curve: `strategy`, `curve` and the columns of `klingel.assess.COLUMNS`; a run that
-            could not be made has its reason as `outcome` and no figures.
+            could not be made, or ended at once, has its reason as `outcome` and no figures.
         straight: stability on straight track, one row a strategy and speed (`klingel.study.compare_straight`).
         margins: of the loops on straight track, one row a strategy, speed and kind of loop (same place).
         failed: run to the reason why it has no figures.
@@ -118,9 +123,12 @@ def compare(
             return on_straight(straights[task], sorted({case.speed for case in cases}))
         contender, case = runs[task]
         series = result.simulate(contender.through(case), progress=progress)
+        outcome = str(series.attrs["outcome"])
+        if series.sizes["time"] < SAMPLES_MIN:
+            return Finished(None, None, outcome)
         assessment = curving(series, vehicle=contender.scenario.vehicle.name)
         result.save(series, folder / "runs" / f"{task}.nc")
-        return Finished(assessment, history_of(series) if case is shown else None)
+        return Finished(assessment, history_of(series) if case is shown else None, outcome)
 
     prepare({c.name: c.scenario for c in compared}, screen)
     batch: Batch[Finished | Straight] = run_all([*runs, *straights], work, result.progress, jobs=jobs, console=screen)
@@ -133,6 +141,7 @@ def compare(
         if isinstance(done, Finished) and done.history is not None
     }
     failed = {task: reason for task, reason in batch.failed.items() if task in runs}
+    failed |= {t: done.outcome for t, done in batch.done.items() if isinstance(done, Finished) and not done.assessment}
     output.write(folder, compared, cases, output.Tables(table, straight, margins), histories, failed)
     elapsed = time.perf_counter() - started
     output.show(screen, table, straight, folder, elapsed)
@@ -149,6 +158,6 @@ def history_case(cases: list[Case]) -> Case:
 
 
 def _came_out(batch: Batch[Finished | Straight], task: str) -> tuple[Assessment | None, str]:
-    """The figures of a run, or the reason why there are none."""
+    """The figures of a run, if there are any, and how it ended."""
     done = batch.done.get(task)
-    return (done.assessment, "") if isinstance(done, Finished) else (None, batch.failed[task])
+    return (done.assessment, done.outcome) if isinstance(done, Finished) else (None, f"no run: {batch.failed[task]}")

@@ -55,14 +55,14 @@ CAPTIONS = {
 def comparison(rows: Iterable[tuple[Contender, Case, Assessment | None, str]]) -> pd.DataFrame:
     """One row a strategy and curve: `strategy`, `curve`, then the columns of `klingel.assess.COLUMNS`.
 
-    rows: contender, curve, its assessment, or None and the reason why there is none, which is then the outcome.
+    rows: contender, curve, its assessment if there is one, and its outcome.
     """
     records = []
-    for contender, case, assessment, reason in rows:
+    for contender, case, assessment, outcome in rows:
         row: Row = {"strategy": contender.name, "curve": case.track.name}
         if assessment is None:
             row |= dict.fromkeys(COLUMNS, float("nan"))
-            row |= {"flange_contact": "", "notes": "", "outcome": f"no run: {reason}"}
+            row |= {"flange_contact": "", "notes": "", "outcome": outcome}
         else:
             row |= assessment.row()
         row |= {"vehicle": contender.scenario.vehicle.name, "radius_m": case.radius}
@@ -133,10 +133,13 @@ def show(screen: Console, table: pd.DataFrame, straight: pd.DataFrame, folder: P
     table = table.assign(outcome=[shown("outcome", outcome) for outcome in table["outcome"]])
     print_runs(screen, table, "Comparison", SHOWN, headings=HEADINGS, words=("strategy", "curve", *WORDS))
     rows, heads = straight_cells(straight)
-    made = Table(title="Least damping on straight track", title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
+    screen.print("Least damping on straight track, of modes that the controllers change", style="bold")
+    made = Table(box=box.SIMPLE_HEAD)
     for i, head in enumerate(heads):
         made.add_column(escape(head), justify="right" if i else "left")
     for row in rows:
         made.add_row(*(escape(cell) for cell in row))
     screen.print(made)
-    screen.print(f"{len(table)} runs in {elapsed:.1f} s, written to {folder}", highlight=False)
+    screen.print(
+        f"{len(table)} {'run' if len(table) == 1 else 'runs'} in {elapsed:.1f} s, written to {folder}", highlight=False
+    )
