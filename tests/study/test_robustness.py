@@ -65,6 +65,10 @@ def test_the_listed_pairs_cover_the_conicities_evenly() -> None:
 
 def test_a_conicity_takes_the_nearest_pair() -> None:
     assert with_conicity(passive(), 0.18).gauge == 1.435
+    plan = robustness.plan_of(passive(), runs=4)
+    ran = robustness_output.of_pairs(pd.DataFrame({"conicity": [0.18, np.nan]}), plan)["conicity"]
+    assert ran[0] == conicities(passive())[PAIRS[3]]
+    assert np.isnan(ran[1])
     worn = with_conicity(passive(), 0.4)
     assert worn.wheel is not None
     assert "worn 1 mm" in worn.wheel.name

@@ -33,7 +33,7 @@ from klingel.study.robustness_figures import (
     two_sided,
     worst,
 )
-from klingel.study.robustness_pairs import conicities
+from klingel.study.robustness_pairs import conicities, nearest_pair
 
 if TYPE_CHECKING:
     from klingel.study.robustness import Plan, Robustness
@@ -62,6 +62,15 @@ def heading(figure: str) -> str:
     return f"{known.name} [{known.unit}]" if known.unit else known.name
 
 
+def sentence(text: str) -> str:
+    """A text with a capital in front, all else as it is.
+
+    >>> sentence("mean of |Fx| below 20 Hz"), sentence("|Fx|")
+    ('Mean of |Fx| below 20 Hz', '|Fx|')
+    """
+    return text[:1].upper() + text[1:]
+
+
 def write(made: Robustness, plan: Plan, *, again: str) -> None:
     """All files of the study but its rows; `again`: command that runs one of the runs again, empty for none."""
     merits = tuple(m for m in MERITS if made.drawn[m].notna().any() or made.alone[m].notna().any())
@@ -88,6 +97,15 @@ def strategy_of(plan: Plan) -> str:
     return plan.scenario.vehicle.name if held is None else type(held).__name__
 
 
+def of_pairs(rows: pd.DataFrame, plan: Plan) -> pd.DataFrame:
+    """Rows with the conicities of the pairs of profiles that ran in the place of those that were drawn."""
+    if "conicity" not in plan.chosen:
+        return rows
+    found = conicities(plan.scenario)
+    ran = [v if np.isnan(v) else found[nearest_pair(plan.scenario, v)] for v in rows["conicity"]]
+    return rows.assign(conicity=ran)
+
+
 def _asked(made: Robustness, plan: Plan) -> Section:
     rows = [
         {
@@ -103,7 +121,9 @@ def _asked(made: Robustness, plan: Plan) -> Section:
     if "conicity" in plan.chosen:
         found = conicities(plan.scenario)
         listed = pd.DataFrame({"pair": [p.name for p in found], "conicity": [f"{c:.3f}" for c in found.values()]})
-        tables.append(Listed("Pairs of profiles; a drawn conicity takes the nearest (EN 15302 at 3 mm)", listed))
+        tables.append(
+            Listed("Pairs of profiles (EN 15302 at 3 mm); a run has the nearest, and its conicity below", listed)
+        )
     scenario = plan.scenario
     facts = {
         "Vehicle": scenario.vehicle.name,
@@ -198,7 +218,7 @@ def _why(made: Robustness, plan: Plan, merits: tuple[str, ...]) -> Section:
         made,
         "over_inputs",
         over_inputs(
-            made.drawn,
+            of_pairs(made.drawn, plan),
             list(found["input"]),
             input_words(plan),
             figure_name="y_max_mm",
@@ -217,7 +237,7 @@ def _signed(value: float) -> str:
 
 
 def _worst(made: Robustness, plan: Plan, again: str) -> Section:
-    rows = worst(made.drawn)
+    rows = of_pairs(worst(made.drawn), plan)
     shown: dict[str, list[str]] = {"run": list(rows["run"])}
     for name in plan.chosen:
         shown[EFFECTS[name].title] = [EFFECTS[name].text(v) for v in rows[name]]
@@ -244,11 +264,11 @@ def _alone(made: Robustness, plan: Plan, merits: tuple[str, ...]) -> Section:
                 label=heading(figure),
                 limit=LIMITS.get(figure),
             ),
-            f"{HEADINGS[figure].meaning.capitalize()}. All other inputs nominal.",
+            f"{sentence(HEADINGS[figure].meaning)}. All other inputs nominal.",
         )
         for figure in merits
     )
-    ended = made.alone[failed(made.alone)]
+    ended = of_pairs(made.alone[failed(made.alone)], plan)
     tables: tuple[Listed, ...] = ()
     if len(ended):
         listed = pd.DataFrame(

@@ -103,8 +103,13 @@ def conicity_of(scenario: Scenario) -> float:
 
 def with_conicity(scenario: Scenario, conicity: float) -> Scenario:
     """The scenario under the listed pair whose conicity is nearest to the wanted one."""
+    return nearest_pair(scenario, conicity).under(scenario)
+
+
+def nearest_pair(scenario: Scenario, conicity: float) -> ProfilePair:
+    """The listed pair whose conicity under the scenario's vehicle is nearest to the wanted one."""
     found = conicities(scenario)
-    return min(PAIRS, key=lambda pair: abs(found[pair] - conicity)).under(scenario)
+    return min(PAIRS, key=lambda pair: abs(found[pair] - conicity))
 
 
 _FOUND: dict[tuple[float, float, str], dict[ProfilePair, float]] = {}
