@@ -138,14 +138,14 @@ def stability_map(check: Check, *, title: str) -> Figure:
     columns: list[float | str] = [*_conicities(straight), *(["curve"] if len(straight) < len(check.table) else [])]
     speeds = sorted(check.table["speed"].unique())
     with styled():
-        width = 1.6 + len(frictions) * (0.5 + 0.72 * len(columns))
-        figure = Figure(figsize=(max(width, 5.0), 2.0 + 0.42 * len(speeds)))
+        width = 1.6 + len(frictions) * (0.3 + 0.6 * len(columns))
+        figure = Figure(figsize=(max(width, 5.0), 1.8 + 0.55 * len(speeds)))
         axes = figure.subplots(1, len(frictions), sharey=True, squeeze=False)[0]
         figure.suptitle(title, x=0.01, ha="left", weight="bold", size=10)
         for axis, friction in zip(axes, frictions, strict=True):
             _cells(axis, check.table[check.table["friction"] == friction], columns, speeds)
             axis.set_title(f"friction {friction:g}", weight="normal", size=9)
-            axis.set_xlabel("conicity")
+            axis.set_xlabel(f"own profiles, cones of a conicity{', curves' if 'curve' in columns else ''}")
         axes[0].set_yticks(range(len(speeds)), [f"{3.6 * v:.0f}" for v in speeds])
         axes[0].set_ylabel("speed  [km/h]")
         marks = [
@@ -168,7 +168,7 @@ def _cells(axis: Axes, rows: pd.DataFrame, columns: Sequence[float | str], speed
     axis.set_ylim(-0.5, len(speeds) - 0.5)
     axis.grid(visible=False)
     labels = [c if isinstance(c, str) else "profiles" if math.isnan(c) else f"{c:g}" for c in columns]
-    axis.set_xticks(range(len(columns)), labels, fontsize=7.5)
+    axis.set_xticks(range(len(columns)), labels, fontsize=8.0)
     axis.tick_params(length=0.0)
     for row in rows.to_dict("records"):
         if not math.isinf(row["radius"]):
@@ -195,7 +195,7 @@ def _cell(axis: Axes, i: int, j: int, row: Mapping[Any, Any]) -> None:
         words = f"{growth:.2g}" if outcome == "unstable" else "none"
     axis.add_patch(box)
     frame = {"facecolor": "white", "edgecolor": "none", "pad": 0.8} if outcome != "stable" else None
-    axis.text(i, j, words, ha="center", va="center", size=7.5, color=color, bbox=frame)
+    axis.text(i, j, words, ha="center", va="center", size=9.0, color=color, bbox=frame)
 
 
 def _shade(damping: float) -> tuple[float, float, float, float]:

@@ -18,6 +18,9 @@ LEVELS = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
 DARK = 3.0
 """Cells above this have white figures [mm]."""
 
+WIDTH_MIN, HEIGHT_MIN = 6.6, 2.4
+"""Of the figure [inch]: pages scale it to their width, and the colour bar needs its height."""
+
 
 def errors_figure(table: pd.DataFrame) -> Figure:
     """One panel a strategy: errors down, curves across, the largest displacement [mm] in colour and figures.
@@ -28,8 +31,8 @@ def errors_figure(table: pd.DataFrame) -> Figure:
     errors, curves = list(dict.fromkeys(table["error"])), list(dict.fromkeys(table["curve"]))
     columns = min(2, len(names))
     rows = -(-len(names) // columns)
-    size = (2.6 + 0.62 * len(curves) * columns + 0.3 * columns, 0.9 + rows * (0.55 + 0.3 * len(errors)))
-    figure = Figure(figsize=size, layout="constrained")
+    wide, high = 2.6 + 0.62 * len(curves) * columns + 0.3 * columns, 0.9 + rows * (0.55 + 0.3 * len(errors))
+    figure = Figure(figsize=(max(wide, WIDTH_MIN), max(high, HEIGHT_MIN)), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
     norm, image = BoundaryNorm(LEVELS, 256, extend="max"), None
     for axis, name in zip(axes.flat, names, strict=False):
@@ -57,5 +60,6 @@ def errors_figure(table: pd.DataFrame) -> Figure:
         axis.set_xlabel("curve (radius in m)", fontsize=9)
     assert image is not None
     bar = figure.colorbar(image, ax=axes, ticks=list(LEVELS), shrink=0.9)
-    bar.set_label("largest displacement of a wheelset [mm]; bold and underlined: flange contact", fontsize=8)
+    bar.set_label("largest displacement [mm]", fontsize=8)
+    bar.ax.tick_params(labelsize=8)
     return figure

@@ -96,9 +96,9 @@ def _summary(bench: Bench) -> Section:
             {
                 "loops": kind,
                 "km/h": f"{3.6 * speed:.0f}",
-                "gain": f"{_cell('gain', float(group['gain'].min()))} of {wanted.gain:g}",
-                "phase °": f"{_cell('phase', float(group['phase'].min()))} of {math.degrees(wanted.phase):.0f}",
-                "delay ms": f"{_cell('delay', float(group['delay'].min()))} of {1e3 * wanted.delay:.0f}",
+                "gain": _of("gain", group, wanted.gain),
+                "phase °": _of("phase", group, wanted.phase),
+                "delay ms": _of("delay", group, wanted.delay),
                 "disk α": _cell("disk", float(group["disk"].min())),
                 "verdict": "unstable" if not group["stable"].all() else "short" if group["missed"].any() else "kept",
             }
@@ -109,8 +109,14 @@ def _summary(bench: Bench) -> Section:
         "Every loop is opened alone where its commands enter the vehicle, all others closed, on the exact sampled"
         " linear model of the whole vehicle. The delay is the one that may come to those that the strategy has.",
     )
-    caption = "Least margins of all loops of a kind, of those that they shall have"
+    caption = "Least margins of all loops of a kind, and of what where one is demanded"
     return Section("Verdict", text, (Listed(caption, pd.DataFrame(rows)),) if rows else ())
+
+
+def _of(name: str, group: pd.DataFrame, wanted: float) -> str:
+    """The least margin of a kind, and of what where something is demanded."""
+    least = _cell(name, float(group[name].min()))
+    return f"{least} of {wanted * SCALES.get(name, 1.0):g}" if wanted > 0.0 else least
 
 
 def _loops(bench: Bench) -> list[Section]:

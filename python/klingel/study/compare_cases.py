@@ -229,7 +229,7 @@ def split(text: str, *, key: str = "strategies") -> tuple[str, dict[str, Any]]:
             remedy = "give parameters as key=value,key=value"
             raise InputError.single(key, text, f"{pair!r} sets nothing", remedy=remedy)
         *tables, last = name.strip().split(".")
-        place = given
+        place: Any = given
         for table in tables:
             place = place.setdefault(table, {}) if isinstance(place, dict) else place
         if not isinstance(place, dict) or last in place:

@@ -47,7 +47,7 @@ def write(made: Withstood, errors: Iterable[str]) -> None:
     svg = write_figure(made.out, "errors", errors_figure(made.table))
     listed = [Listed("Strategies without flange contact in any of the curves", _robust(made))]
     listed += [Listed(str(name), _wide(rows)) for name, rows in made.table.groupby("strategy", sort=False)]
-    caption = "Largest displacement by error and curve; bold: the flange carries; ×: not completed."
+    caption = "Largest displacement by error and curve; bold and underlined: the flange carries; ×: not completed."
     section = Section(
         "What each strategy withstands", ABOUT, tables=tuple(listed), pictures=(Picture("errors", svg, caption),)
     )
