@@ -201,6 +201,8 @@ def test_linear_models_have_delays_and_means_of_holds() -> None:
     growth = [kl.linear.steady_state(each).growth for each in (base, slow, late)]
     assert growth[1] == pytest.approx(growth[0], rel=0.01)
     assert growth[2] != pytest.approx(growth[0], rel=1e-4)
+    with pytest.raises(kl.errors.SimulationError, match=r"control has 80... states.*5000 at most"):
+        kl.linearise(base.replace(sensors=Sensors(encoder=Encoder(delay="10 s"))))
 
 
 def test_problems_come_together() -> None:

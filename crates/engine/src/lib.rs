@@ -30,7 +30,7 @@ pub mod wiring;
 
 pub use compile::{compile, named_profile, pair_geometry, prepare};
 pub use error::{EngineError, Fault};
-pub use linearise::{LinearControl, LinearModel, linearise};
+pub use linearise::{LinearControl, LinearModel, linearisable, linearise};
 pub use model::Model;
 pub use rates::rates;
 pub use simulate::{Progress, TimeSeries, simulate};

@@ -1,7 +1,7 @@
 //! The linear model of a vehicle about a steady state: exact Jacobians of the same equations that runs integrate.
 //! The plant is continuous, with held inputs; its controllers are sampled; whoever needs one model of both joins them.
 
-use crate::control::Memory;
+use crate::control::{ControlError, Memory};
 use crate::error::{EngineError, Fault};
 use crate::kinks;
 use crate::model::Model;
@@ -51,17 +51,32 @@ pub struct LinearControl {
 
 type Wide = Dual<DIRECTIONS>;
 
+/// Of a controller, whose matrix then takes 200 MB.
+const STATES_MOST: usize = 5000;
+
 /// A value that is the variable of direction `place - first` where that is one.
 fn seed(value: f64, place: usize, first: usize) -> Wide {
     Dual { value, slope: core::array::from_fn(|d| f64::from(u8::from(first + d == place))) }
 }
 
+/// Whether a controller is small enough for a linear model, before its steady state is looked for.
+///
+/// # Errors
+/// A controller of more than `STATES_MOST` states.
+pub fn linearisable(wiring: &Wiring) -> Result<(), EngineError> {
+    match wiring.diagram.memory::<f64>().states.len() {
+        states if states > STATES_MOST => Err(ControlError::Large { states, most: STATES_MOST }.into()),
+        _ => Ok(()),
+    }
+}
+
 /// Linearises about a steady state.
 ///
 /// # Errors
-/// A state at which a wheel is off its rail or a controller fails.
+/// A state at which a wheel is off its rail or a controller fails; as `linearisable`.
 pub fn linearise(m: &Model, wiring: Option<&Wiring>, at: &Steady) -> Result<LinearModel, EngineError> {
     let failed = |fault: Fault| EngineError::Linear { fault };
+    wiring.map_or(Ok(()), linearisable)?;
     let plant = plant(m, at).map_err(failed)?;
     let mut pass = Pass::<f64>::new(m, wiring);
     pass.x.copy_from_slice(&at.x);

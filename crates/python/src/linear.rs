@@ -2,7 +2,7 @@
 //! What they mean in railway words, and how plant and controllers are joined, is in Python.
 
 use crate::{parse, raised};
-use klingel_engine::{EngineError, LinearControl, LinearModel, Model, Steady, Wiring, compile};
+use klingel_engine::{EngineError, LinearControl, LinearModel, Model, Steady, Wiring, compile, linearisable};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -24,6 +24,7 @@ pub fn operating_point(py: Python<'_>, spec: &str, near: Option<&OperatingPoint>
         let spec = parse(spec)?;
         let model = compile(&spec)?;
         let wiring = spec.control.as_ref().map(|c| Wiring::new(&model, c)).transpose()?;
+        wiring.as_ref().map_or(Ok(()), linearisable)?;
         let start = near.map(|n| &n.steady).filter(|s| s.x.len() == model.state_count());
         let steady = klingel_engine::steady(&model, wiring.as_ref(), start)?;
         Ok(OperatingPoint { model: Arc::new(model), wiring, steady })

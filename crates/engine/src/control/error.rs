@@ -44,6 +44,11 @@ pub enum ControlError {
          give it as blocks or as a discrete StateSpace"
     )]
     ExternalNotLinear { name: String },
+    #[error(
+        "control has {states} states, with delays one a sample, of which a linear model would be too large; \
+         shorten delays until it has {most} at most"
+    )]
+    Large { states: usize, most: usize },
     #[error("`{name}` {text}")]
     External { name: String, text: String },
     #[error(
