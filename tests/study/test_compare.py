@@ -165,7 +165,7 @@ def test_the_vehicle_has_the_inputs_that_a_strategy_commands() -> None:
         return control.PythonController(Nothing(), sample_time=sample_time, measurements=[], commands=[command])
 
     assert made_for(of("bogie1.yaw_actuator_left.force", "2 ms")).name == "actuated_coach"
-    with pytest.raises(InputError, match=r"fits no vehicle of the library. mechatronic_irw: .* too slow"):
+    with pytest.raises(InputError, match=r"control.timing.sample_time = 0.1: is too slow for `Nothing`"):
         contenders({"slow": of("bogie1.wheelset1.actuator_left.force", "100 ms")}, FIRST)
     with pytest.raises(InputError, match=r"mechatronic_irw: it has no input `bogie1.wing`"):
         made_for(of("bogie1.wing", "2 ms"))
