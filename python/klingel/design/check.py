@@ -193,7 +193,7 @@ def _solved(sweep: Callable[[Scenario], Linearised], scenario: Scenario) -> Line
     try:
         return sweep(scenario)
     except SimulationError as error:
-        if not str(error).startswith(NO_STEADY_STATE):
+        if NO_STEADY_STATE not in str(error):
             raise
         return None
 
