@@ -4,6 +4,7 @@ Every file is written whole or not at all, and the same runs give the same bytes
 from __future__ import annotations
 
 from collections.abc import Sequence
+from textwrap import shorten
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -43,6 +44,9 @@ LIMITS = {"y_max_mm": Y_LIMIT}
 
 DISTINCT = ("y_max_mm", "lateral_force_max_kN", "attack_angle_max_mrad", "wear_index_N")
 """Figures whose distribution is drawn."""
+
+WIDEST = 32
+"""Characters of a cell in the table of the worst runs."""
 
 
 def input_words(plan: Plan) -> dict[str, InputWords]:
@@ -242,8 +246,10 @@ def _worst(made: Robustness, plan: Plan, again: str) -> Section:
     for name in plan.chosen:
         shown[EFFECTS[name].title] = [EFFECTS[name].text(v) for v in rows[name]]
     for figure in ("y_max_mm", "lateral_force_max_kN", "attack_angle_max_mrad", "flange_contact", "outcome"):
-        shown[heading(figure)] = [cell(figure, v) for v in rows[figure]]
+        # one long reason would widen all columns
+        shown[heading(figure)] = [shorten(cell(figure, v), WIDEST, placeholder=" …") for v in rows[figure]]
     words = [
+        "Long outcomes are whole in runs.csv.",
         f"Run one of them again: {again} --run {rows['run'].iloc[0]}" if again else "",
         "From Python: klingel.study.robustness.plan_of(...).of(name) is the scenario of a run.",
     ]
