@@ -23,7 +23,8 @@ build: $(VENV)/.extension ## set up .venv and build the extension
 study: build ## run the study of Perez et al. 2004 into out/perez2004 (OUT=DIR to change)
 	$(BIN)/klingel study perez2004 --out $(OUT)
 
-test: lint test-rust test-python ## format, lint, types, Rust tests, Python tests
+test: lint ## format, lint, types, Rust tests, Python tests
+	@$(MAKE) --no-print-directory --jobs=2 test-rust test-python
 
 test-rust: $(VENV)/.packages ## Rust tests
 	cargo test --workspace --locked --quiet
