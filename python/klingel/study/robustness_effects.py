@@ -168,6 +168,11 @@ STEER = tuple(kind for kind in KINDS if kind != "current")
 """Kinds of sensors that steering goes by; currents are measured inside the drives, where nothing waits for a bus."""
 
 
+def sensed(title: str, unit: str, kind: str, error: str, **others: Any) -> Effect:
+    """An effect on one error of one kind of sensors; others: as `Effect`."""
+    return Effect(title, unit, lambda s, value: with_sensors(s, (kind,), **{error: value}), through=(kind,), **others)
+
+
 EFFECTS: Mapping[str, Effect] = {
     "conicity": Effect("conicity", "1", with_conicity, nominal=None, least=0.01, most=0.8),
     "friction": Effect("friction", "1", friction, nominal=None, least=0.01, most=1.5),
@@ -177,54 +182,12 @@ EFFECTS: Mapping[str, Effect] = {
     "curvature_error": Effect(
         "curvature error", "1", curvature_error, least=-0.5, most=0.5, shown="%", factor=100.0, through=("position",)
     ),
-    "position_error": Effect(
-        "position error",
-        "m",
-        lambda scenario, value: with_sensors(scenario, ("position",), bias=value),
-        least=-500.0,
-        most=500.0,
-        shown="m",
-        through=("position",),
-    ),
+    "position_error": sensed("position error", "m", "position", "bias", least=-500.0, most=500.0, shown="m"),
     "delay": Effect("delay", "s", delay, least=0.0, most=1.0, shown="ms", factor=1e3, through=STEER),
-    "encoder_noise": Effect(
-        "encoder noise",
-        "rad/s",
-        lambda scenario, value: with_sensors(scenario, ("encoder",), noise=value),
-        least=0.0,
-        most=1.0,
-        shown="rad/s",
-        through=("encoder",),
-    ),
-    "gyro_noise": Effect(
-        "gyro noise",
-        "rad/s",
-        lambda scenario, value: with_sensors(scenario, ("gyro",), noise=value),
-        least=0.0,
-        most=1.0,
-        shown="mrad/s",
-        factor=1e3,
-        through=("gyro",),
-    ),
-    "gyro_bias": Effect(
-        "gyro bias",
-        "rad/s",
-        lambda scenario, value: with_sensors(scenario, ("gyro",), bias=value),
-        least=-0.5,
-        most=0.5,
-        shown="mrad/s",
-        factor=1e3,
-        through=("gyro",),
-    ),
-    "load_cell_bias": Effect(
-        "load cell bias",
-        "N m",
-        lambda scenario, value: with_sensors(scenario, ("load_cell",), bias=value),
-        least=-1e5,
-        most=1e5,
-        shown="N m",
-        through=("load_cell",),
-    ),
+    "encoder_noise": sensed("encoder noise", "rad/s", "encoder", "noise", least=0.0, most=1.0, shown="rad/s"),
+    "gyro_noise": sensed("gyro noise", "rad/s", "gyro", "noise", least=0.0, most=1.0, shown="mrad/s", factor=1e3),
+    "gyro_bias": sensed("gyro bias", "rad/s", "gyro", "bias", least=-0.5, most=0.5, shown="mrad/s", factor=1e3),
+    "load_cell_bias": sensed("load cell bias", "N m", "load_cell", "bias", least=-1e5, most=1e5, shown="N m"),
 }
 """Every input of the study, in the order of its tables."""
 
