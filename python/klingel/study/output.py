@@ -139,8 +139,8 @@ def _method(scenario: Scenario, asked: int, made: int) -> dict[str, str]:
         "Contact": f"elastic, tabulated over shift and roll; creep forces by {_creep(scenario)}, one "
         f"coefficient of friction, {FRICTION:.2f} in the main runs",
         "Integration": f"step {1e3 * STEP['passive']:g} ms, in the main runs of solid_like "
-        f"{1e3 * STEP['solid_like']:g} ms; controllers sampled at 1 kHz; runs start from the static "
-        "equilibrium",
+        f"{1e3 * STEP['solid_like']:g} ms, as at R = 300 m with free wheels; "
+        "controllers sampled at 1 kHz; runs start from the static equilibrium",
         "Speed": "held by a slow ideal force on the body; the motors of the active vehicles give the torque of Table 1",
     }
 
